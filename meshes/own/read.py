@@ -9,6 +9,7 @@ from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
 from io import StringIO
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -71,15 +72,24 @@ def read_solids(
     return replace(solids, source=str(path)), scale
 
 
-def part_areas(path: Path, unit: str) -> dict[str, float]:
-    """Area (m2) of each part of a file that `check_file` lets pass, by name; nothing is meshed. Raises ValueError."""
+class PartSize(NamedTuple):
+    """Area (m2) of a part of a file, and the triangles that it has there, 0 in a CAD file."""
+
+    area_m2: float
+    triangles: int
+
+
+def part_sizes(path: Path, unit: str) -> dict[str, PartSize]:
+    """Size of each part of a file that `check_file` lets pass, by name; nothing is meshed. Raises ValueError."""
     suffix = path.suffix.lower()
     if suffix in CAD_FORMATS:
-        return cad_areas(path, unit)
+        return {name: PartSize(area, 0) for name, area in cad_areas(path, unit).items()}
     solids = READERS[suffix](path)
     _check_numbers(path, solids)
-    of_part = np.bincount(solids.part, areas(solids.points, solids.triangles), len(solids.names))
-    return dict(zip(solids.names, (metres_per(unit) ** 2 * of_part).tolist(), strict=True))
+    number = len(solids.names)
+    of_part = metres_per(unit) ** 2 * np.bincount(solids.part, areas(solids.points, solids.triangles), number)
+    counts = np.bincount(solids.part, minlength=number)
+    return dict(zip(solids.names, map(PartSize, of_part.tolist(), counts.tolist()), strict=True))
 
 
 def _check_signature(path: Path, suffix: str) -> None:

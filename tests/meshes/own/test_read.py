@@ -12,7 +12,7 @@ import pytest
 from bulkwear.meshes.gmsh_model import gmsh_model
 from bulkwear.meshes.own import cad
 from bulkwear.meshes.own.mesh import own_mesh
-from bulkwear.meshes.own.read import part_areas
+from bulkwear.meshes.own.read import part_sizes
 from tests import REPOSITORY
 from tests.support.own_solids import (
     AREA,
@@ -75,13 +75,20 @@ def test_every_format_gives_the_same_surface(folder, name):
 
 
 @pytest.mark.parametrize("name", but_for_later(FORMATS, "bodies.brep"))
-def test_areas_are_told_without_meshing(folder, name):
-    """Part by part, under the names of the mesh."""
-    told, meshed = part_areas(folder / name, "mm"), own_mesh(folder / name, "mm", EDGE).parts
+def test_sizes_are_told_without_meshing(folder, name):
+    """Part by part, under the names of the mesh, with the triangles that the file has."""
+    told, meshed = part_sizes(folder / name, "mm"), own_mesh(folder / name, "mm", EDGE).parts
     assert list(told) == [part.name for part in meshed]
-    np.testing.assert_allclose(list(told.values()), [part.area_m2 for part in meshed], rtol=FORMATS[name])
+    area = sum(size.area_m2 for size in told.values())
+    np.testing.assert_allclose(
+        [size.area_m2 for size in told.values()], [part.area_m2 for part in meshed], rtol=FORMATS[name]
+    )
+    assert [size.triangles for size in told.values()] == (
+        [0, 0] if FORMATS[name] == CAD else [24 // len(told)] * len(told)
+    )
     if name == "ascii.stl":  # numbers without a unit of their own
-        assert sum(part_areas(folder / name, "m").values()) == pytest.approx(1e6 * sum(told.values()))
+        of_m = part_sizes(folder / name, "m").values()
+        assert sum(size.area_m2 for size in of_m) == pytest.approx(1e6 * area)
 
 
 @pytest.mark.parametrize("name", but_for_later(WITH_PARTS, "bodies.brep"))
@@ -299,14 +306,14 @@ def test_a_cad_file_that_crashes_its_reader_is_one_sentence(folder, tmp_path):
     text = (folder / "bodies.brep").read_text()
     (tmp_path / "a.brep").write_text(re.sub(r"TShapes \d+", "TShapes 999", text))
     with pytest.raises(ValueError, match=r"a\.brep: not a readable \.brep file \(OpenCASCADE ended with signal 11\)$"):
-        part_areas(tmp_path / "a.brep", "mm")
+        part_sizes(tmp_path / "a.brep", "mm")
 
 
 def test_a_reader_that_comes_to_no_end_is_ended(folder, monkeypatch):
     """By the system, when its processor time is used up: as where a BREP is cut short."""
     monkeypatch.setattr(cad, "PROGRAM", "tests.support.endless")
     with pytest.raises(ValueError, match=r"bodies\.step: not a readable .* came to no end within its processor time"):
-        part_areas(folder / "bodies.step", "mm")
+        part_sizes(folder / "bodies.step", "mm")
 
 
 def test_a_step_file_that_is_not_whole_is_refused(folder, tmp_path):
@@ -314,7 +321,7 @@ def test_a_step_file_that_is_not_whole_is_refused(folder, tmp_path):
     text = (folder / "bodies.step").read_text()
     (tmp_path / "a.step").write_text(text.replace("ENDSEC;\nEND-ISO", "(", 1))
     with pytest.raises(ValueError, match=r"a\.step: not a whole \.step file \("):
-        part_areas(tmp_path / "a.step", "mm")
+        part_sizes(tmp_path / "a.step", "mm")
 
 
 @pytest.mark.parametrize(("node", "name"), [(-1, "a.vtk"), (16, "a.vtu"), (16, "a.ply")])
@@ -350,8 +357,8 @@ def test_a_coordinate_that_is_no_number_is_refused(tmp_path):
 
 def test_a_limit_of_processor_time_that_a_shell_has_set_stays(folder):
     """CAD files are read where `ulimit -t` has set a hard limit, which nobody may raise."""
-    code = f"print(part_areas(Path({str(folder / 'bodies.step')!r}), 'mm'))"
-    code = f"from pathlib import Path; from bulkwear.meshes.own.read import part_areas; {code}"
+    code = f"print(part_sizes(Path({str(folder / 'bodies.step')!r}), 'mm'))"
+    code = f"from pathlib import Path; from bulkwear.meshes.own.read import part_sizes; {code}"
     asked = f"ulimit -t {HOUR_S}; exec {sys.executable} -c {shlex.quote(code)}"
     ended = subprocess.run(["bash", "-c", asked], capture_output=True, text=True, cwd=REPOSITORY)
     assert "trough" in ended.stdout, ended.stderr

@@ -7,13 +7,16 @@ import tempfile
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bulkwear.meshes.own.solids import MOST_TRIANGLES
 from bulkwear.workflows.cases.equipment.decks import fall_speed, moving_mesh, skin
 from bulkwear.workflows.cases.equipment.drawings import check_solid, drawing, drawing_digest
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.engine.work import Stage, bytes_of_run
+
+if TYPE_CHECKING:
+    from bulkwear.meshes.own.read import PartSize
 
 SPEED = 3.0  # m/s, of the fastest particles where no feed falls faster; they say how often lists are made
 EQUILATERAL = math.sqrt(3.0) / 4.0  # -, area of an equilateral triangle over its edge squared
@@ -62,25 +65,27 @@ def run_bytes(run: Parameters) -> float:
 def triangles_of(part: Parameters) -> float:
     """Return about how many triangles a part gets, by the area of its drawing, which is meshed later.
 
-    Raises ConfigError for a drawing that cannot be read, and for a solid that is not in it.
+    No fewer than a mesh file has: nothing is made coarser. Raises ConfigError for a drawing that cannot be read, and
+    for a solid that is not in it.
     """
     try:
-        areas = _areas(part["file"], part["unit"], drawing_digest(part["file"]))
+        sizes = _sizes(part["file"], part["unit"], drawing_digest(part["file"]))
     except (ValueError, OSError) as fault:
         raise ConfigError(f"parts.{part['name']}: {fault}") from None
-    check_solid(part, areas)
-    area = areas[part["solid"]] if "solid" in part else sum(areas.values())
-    return OVER_EQUILATERAL * area / (EQUILATERAL * part["edge_m"] ** 2)
+    check_solid(part, sizes)
+    per_area = OVER_EQUILATERAL / (EQUILATERAL * part["edge_m"] ** 2)
+    wanted = [sizes[part["solid"]]] if "solid" in part else sizes.values()
+    return sum(max(per_area * size.area_m2, size.triangles) for size in wanted)
 
 
 @cache
-def _areas(name: str, unit: str, content: str) -> Mapping[str, float]:
-    """Return the area (m2) of each solid of a drawing; content: its digest, by which it is remembered."""
-    from bulkwear.meshes.own.read import check_file, part_areas
+def _sizes(name: str, unit: str, content: str) -> Mapping[str, PartSize]:
+    """Return the size of each solid of a drawing; content: its digest, by which it is remembered."""
+    from bulkwear.meshes.own.read import check_file, part_sizes
 
     path = drawing(name, Path(_drawn().name))
     check_file(path)
-    return part_areas(path, unit)
+    return part_sizes(path, unit)
 
 
 @cache

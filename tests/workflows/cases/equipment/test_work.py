@@ -8,6 +8,8 @@ from bulkwear.workflows.cases.equipment.work import MOVING_PER_PARTICLE, run_byt
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.forecast.forecast import work_of
 from tests.support.own_machine_project import machine_study
+from tests.support.own_solids import write_ascii
+from tests.workflows.cases.equipment.scenes import box
 
 
 @pytest.fixture(scope="module")
@@ -57,6 +59,21 @@ def test_triangles_are_counted_by_the_area_of_the_drawing(run):
     part = run["parts"][0]
     assert triangles_of(part) == pytest.approx(len(machine_surface([part]).triangles), rel=COUNT)
     assert triangles_of({**part, "edge_m": 0.5 * part["edge_m"]}) == pytest.approx(4.0 * triangles_of(part))
+
+
+def test_triangles_that_a_file_has_are_counted(run, tmp_path):
+    """A scan has more than its area asks for, and none is taken away; without a solid each body counts for itself."""
+    part = {**run["parts"][0], "file": str(tmp_path / "scan.stl")}
+    scan = box((0.24, 0.1, 0.03), 0.004)
+    plate = box((0.4, 0.2, 0.2), 0.2)
+    write_ascii(
+        tmp_path / "scan.stl", {name: (1e3 * m.points, m.triangles) for name, m in (("scan", scan), ("plate", plate))}
+    )
+    of_scan = triangles_of({**part, "solid": "scan"})
+    assert of_scan == len(scan.triangles) == len(machine_surface([{**part, "solid": "scan"}]).triangles)
+    of_plate = triangles_of({**part, "solid": "plate"})
+    assert of_plate > 2 * len(plate.triangles)
+    assert triangles_of(part) == pytest.approx(of_scan + of_plate)
 
 
 def test_a_drawing_that_cannot_be_read_has_no_forecast(run, tmp_path):
