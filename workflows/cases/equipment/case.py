@@ -115,10 +115,10 @@ class Equipment(Case):
         cannot be simulated.
         """
         from bulkwear.workflows.cases.equipment.machine_checks import check_machine, check_units
-        from bulkwear.workflows.cases.equipment.surfaces import machine_surface, open_ends
+        from bulkwear.workflows.cases.equipment.surfaces import machine_surface, on_ends, open_ends
 
         try:
-            surface = machine_surface(geometry["parts"])
+            surface = on_ends(machine_surface(geometry["parts"]), geometry)
         except ConfigError:
             check_units(geometry)  # a wrong unit may be why
             raise

@@ -6,6 +6,7 @@ import math
 import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -69,6 +70,24 @@ def part_surface(number: int, part: Part, folder: Path, meshed: Callable[..., Ow
             print(f"{name}: {part['file']}, {repair.part}: {words}.", file=sys.stderr)
     labels = np.full(len(surface.triangles), label_of(number, part), dtype=np.int64)
     return SurfaceMesh(surface.points, surface.triangles, {"part": labels})
+
+
+def on_ends(surface: SurfaceMesh, run: Mapping[str, Any]) -> SurfaceMesh:
+    """Return the surface with the nodes that are within the weld tolerance of an end of a slice put on it.
+
+    Coordinates of single precision, as of binary STL, miss an end by their rounding.
+    """
+    if not run["periodic"]:
+        return surface
+    from bulkwear.meshes.own.weld import weld_tolerance  # slow to import, and few machines are slices
+
+    points, axis = surface.points.copy(), "xyz".index(run["periodic"]["axis"])
+    for number, part in enumerate(run["parts"]):
+        nodes = np.unique(surface.triangles[faces_of(surface, number, part)])
+        tolerance = weld_tolerance(points[nodes])
+        for end in (run["periodic"]["low_m"], run["periodic"]["high_m"]):
+            points[nodes[np.abs(points[nodes, axis] - end) <= tolerance], axis] = end
+    return replace(surface, points=points)
 
 
 def open_ends(surface: SurfaceMesh, run: Mapping[str, Any]) -> SurfaceMesh:

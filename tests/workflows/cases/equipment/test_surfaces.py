@@ -23,15 +23,16 @@ from bulkwear.workflows.cases.equipment.surfaces import (
     feed_face,
     label_of,
     machine_surface,
+    on_ends,
     open_ends,
     part_surface,
     rectangle,
     room_needed,
 )
 from bulkwear.workflows.config.layers import ConfigError
-from tests.support.own_machine_project import CORNERS, SIZES, machine_study
+from tests.support.own_machine_project import CORNERS, SETTINGS, SIZES, TINY, Machine, drawings, machine_study
 from tests.support.own_solids import SIZES as SOLID_SIZES
-from tests.support.own_solids import bodies, box, write_ascii, write_bodies
+from tests.support.own_solids import bodies, box, write_ascii, write_binary, write_bodies
 
 VOLUME = 1e-6  # relative; binary numbers of a text file
 ROUND_OFF = 1e-12
@@ -197,6 +198,32 @@ def test_parts_that_go_through_a_slice_are_open_there():
     assert len(found.triangles) == 24 - 8 and found.cell_data["part"].tolist() == [0] * 8 + [1] * 8
     assert np.abs(unit_normals(found.points, found.triangles)[:, 1]).max() < ROUND_OFF
     assert areas(found.points, found.triangles).sum() == pytest.approx(2 * 2 * (0.2 * 0.1 + 0.1 * 0.03), rel=ROUND_OFF)
+
+
+@pytest.mark.parametrize("half", [50.0, 1500.1, 1501.14])
+def test_a_slice_of_single_precision(tmp_path, half):
+    """Binary STL rounds 1501.14 mm to 1501.140015: its nodes are put on the ends, where its faces are left out."""
+    bodies = {name: (points * [1.0, half / 50.0, 1.0], triangles) for name, (points, triangles) in drawings().items()}
+    ends = {"periodic": {"axis": "y", "low_mm": -half, "high_mm": half}, "parts": {"paddle": {"motion": None}}}
+    with machine_study(tmp_path, machine=Machine(SETTINGS, bodies, TINY.materials), **ends) as study:
+        for name, each in bodies.items():
+            write_binary(tmp_path / f"meshes/{name}.stl", *each)
+        run = study.case.surface_sections(study.runs[0].parameters)
+        surface = study.case.surface_mesh(run)
+    along = surface.points[:, 1]
+    assert [along.min(), along.max()] == [run["periodic"]["low_m"], run["periodic"]["high_m"]]
+    assert np.abs(unit_normals(surface.points, surface.triangles)[:, 1]).max() < ROUND_OFF
+    assert len(boundary_edges(surface.triangles))
+
+
+def test_nodes_farther_from_an_end_stay():
+    """Than the weld tolerance, 1e-6 of the part; so do all without a slice."""
+    run, whole = slice_of(axis="y"), two_parts()
+    for beyond, moved in ((1e-8, True), (-1e-7, True), (1e-6, False)):
+        off = SurfaceMesh(whole.points + np.array([0.0, beyond, 0.0]), whole.triangles, whole.cell_data)
+        found = on_ends(off, run).points
+        np.testing.assert_array_equal(found, whole.points if moved else off.points)
+        assert on_ends(off, slice_of()) is off
 
 
 def test_part_that_ends_within_a_slice_stays_closed():
