@@ -8,6 +8,7 @@ import igl
 import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas, boundary_nodes
+from bulkwear.postproc.wear.bodies import body
 from bulkwear.postproc.wear.side import connected_pieces
 
 WITHIN = 0.5  # -, winding number of a place within a closed body: 1, outside 0
@@ -90,3 +91,29 @@ def on_surface(mesh: SurfaceMesh, other: SurfaceMesh) -> float:
     distance, *_ = igl.point_mesh_squared_distance(middles, other.points, other.triangles.astype(np.int64))
     area = areas(mesh.points, chosen)
     return float(area[np.asarray(distance).ravel() <= near**2].sum() / area.sum())
+
+
+def share_a_piece(mesh: SurfaceMesh, other: SurfaceMesh, least: float) -> bool:
+    """Return whether a connected piece of a surface lies on one of the other, and that on it, by at least a share (-).
+
+    A sheet behind a body lies on it, but the body not on the sheet.
+    """
+    near = SHARED_WITHIN * min(diagonal(mesh.points), diagonal(other.points))
+    pieces, others = connected_pieces(mesh.triangles), connected_pieces(other.triangles)
+    boxes, other_boxes = _boxes(mesh, pieces), _boxes(other, others)
+    for number, box in enumerate(boxes):
+        for alike in np.flatnonzero((np.abs(other_boxes - box) <= near).all(axis=1)):
+            one, another = body(mesh, pieces == number), body(other, others == alike)
+            if min(on_surface(one, another), on_surface(another, one)) > least:
+                return True
+    return False
+
+
+def _boxes(mesh: SurfaceMesh, piece: np.ndarray) -> np.ndarray:
+    """Return the lowest and the highest corner (pieces, 6) m of each piece; piece: (m,) of each face."""
+    corners = mesh.points[mesh.triangles]
+    order = np.argsort(piece, kind="stable")
+    first = np.searchsorted(piece[order], np.arange(piece.max() + 1))
+    return np.hstack(
+        [np.minimum.reduceat(corners.min(axis=1)[order], first), np.maximum.reduceat(corners.max(axis=1)[order], first)]
+    )

@@ -24,7 +24,7 @@ from bulkwear.postproc.mesh import SurfaceMesh, areas, boundary_nodes
 from bulkwear.postproc.wear.bodies import body
 from bulkwear.postproc.wear.directions import ON_END
 from bulkwear.postproc.wear.thickness import thickness_to_back
-from bulkwear.workflows.cases.equipment.bodies import closed_faces, diagonal, first_within, is_within, on_surface
+from bulkwear.workflows.cases.equipment.bodies import closed_faces, diagonal, first_within, is_within, share_a_piece
 from bulkwear.workflows.cases.equipment.checks import LEFT_TO_WEAR, thin_phrase
 from bulkwear.workflows.cases.equipment.decks import domain, largest_cell, longest_s, moving_mesh
 from bulkwear.workflows.cases.equipment.drawings import drawing
@@ -44,7 +44,7 @@ FINEST = 0.01  # -, of half the longest side of such room: parts that are narrow
 MEASURED = 0.1  # -, by which a thickness along normals may be less than the one drawn: a flight leans, a vault is bent
 THICKER = 4.0  # -, that a thickness which is given may be over that of half the body's area: ribs and bars are thicker
 WAY_OF_RADIUS = 0.5  # -, that a part, or a particle at the inlet, may go in a time step
-MOST_SHARED = 0.9  # -, of a part's area that may lie on another part: a thin plate on a wall has half of it there
+MOST_SHARED = 0.9  # -, of a body's area that may lie on another part's: a thin plate on a wall has half of it there
 AXES = "xyz"
 
 Parameters = Mapping[str, Any]
@@ -107,12 +107,13 @@ def _check_size(run: Parameters, part: Parameters, size: float) -> None:
 def _check_drawn_once(run: Parameters, parts: Sequence[SurfaceMesh]) -> None:
     """Raise ConfigError for a body that two parts have, as a liner of its own beside an assembly that holds it still.
 
-    A liner has half of its surface on the wall behind it, the same body nearly all.
+    A liner has half of its surface on the wall behind it, the same body nearly all; a wall drawn as a sheet lies on the
+    liner with all of its own, but not the liner on it.
     """
     for (one, mesh), (other, beside) in itertools.combinations(zip(run["parts"], parts, strict=True), 2):
         if one["motion"] != other["motion"]:
             continue
-        if max(on_surface(mesh, beside), on_surface(beside, mesh)) > MOST_SHARED:
+        if share_a_piece(mesh, beside, MOST_SHARED):
             raise ConfigError(
                 f"parts.{other['name']}.file is {other['file']}, of which a body lies where parts.{one['name']}"
                 f" ({one['file']}) is and would press on particles once more, allowed is each body once: name what is"

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.wear.bodies import together
-from bulkwear.workflows.cases.equipment.bodies import closed_faces, first_within, is_within, on_surface
+from bulkwear.workflows.cases.equipment.bodies import closed_faces, first_within, is_within, on_surface, share_a_piece
 from tests.workflows.cases.equipment.scenes import box, without_lid
 
 
@@ -40,3 +41,22 @@ def test_how_much_of_a_surface_lies_on_another():
         0.04 / (2.0 * (0.04 + 0.012 + 0.003)), abs=0.02
     )
     assert on_surface(plate, box((0.4, 0.1, 0.03), 0.025, (0.0, 0.0, 0.001))) < 0.2
+
+
+def test_whether_two_surfaces_have_a_piece_in_common():
+    """The same body, alone or one of several, with other facets; no body that only a larger piece has a side on."""
+    plate, finer = box((0.4, 0.1, 0.03), 0.025), box((0.4, 0.1, 0.03), 0.02)
+    bolt, wall = box((0.1, 0.1, 0.1), 0.05, (1.0, 0.0, 0.0)), box((0.4, 0.1, 0.03), 0.025, (0.0, 0.0, -0.03))
+    for other, alike in (
+        (finer, True),
+        (together([bolt, finer]), True),
+        (wall, False),
+        (together([bolt, wall]), False),
+    ):
+        for body in (plate, together([plate, box((0.2, 0.2, 0.2), 0.1, (0.0, 3.0, 0.0))])):
+            assert share_a_piece(body, other, 0.9) is share_a_piece(other, body, 0.9) is alike
+    lid = SurfaceMesh(
+        plate.points, plate.triangles[(plate.points[plate.triangles][:, :, 2] > 0.015 - 1e-9).all(axis=1)]
+    )
+    assert on_surface(lid, plate) == 1.0
+    assert not share_a_piece(lid, plate, 0.9)

@@ -9,7 +9,7 @@ from bulkwear.meshes.drawing import write_step
 from bulkwear.meshes.gmsh_model import gmsh_model
 from bulkwear.meshes.own.mesh import own_mesh
 from bulkwear.postproc.mesh import SurfaceMesh, enclosed_volume
-from bulkwear.postproc.wear.bodies import together
+from bulkwear.postproc.wear.bodies import body, together
 from bulkwear.workflows.cases.equipment.machine_checks import (
     check_machine,
     check_units,
@@ -134,7 +134,9 @@ def test_a_machine_of_the_right_size_passes(tmp_path):
 
 
 def test_a_body_that_two_parts_have_is_refused(run):
-    """By whatever file, alone or among others; not one that moves another way, and no liner on its wall."""
+    """By whatever file, alone or among others; not one that moves another way, and no liner on its wall, which may
+    be a sheet of the liner's outline.
+    """
     finer, wall = box((0.4, 0.1, 0.03), 0.02, (0.0, 0.0, -0.3)), box((0.4, 0.1, 0.03), 0.025, (0.0, 0.0, -0.33))
     for other in (finer, together([finer, box((0.1, 0.1, 0.03), 0.025, (0.45, 0.0, -0.3))])):
         said = message_of(run, ("liner", PLATE, {}), ("assembly", other, {}))
@@ -142,6 +144,11 @@ def test_a_body_that_two_parts_have_is_refused(run):
             "parts.assembly.file is assembly.stl, of which a body lies where parts.liner (liner.stl)"
         )
     check_machine(*machine(run, ("liner", PLATE, {}), ("wall", wall, {})))
+    back = body(PLATE, (PLATE.points[PLATE.triangles][:, :, 2] < -0.315 + 1e-9).all(axis=1))
+    for sheet in (back, turned_round(back)):
+        check_machine(*machine(run, ("liner", PLATE, {}), ("wall", sheet, {"wears": False})))
+        check_machine(*machine(run, ("wall", sheet, {"wears": False}), ("liner", PLATE, {})))
+    message_of(run, ("wall", back, {"wears": False}), ("sheet", turned_round(back), {"wears": False}))
     check_machine(*machine(run, ("liner", PLATE, {}), ("assembly", finer, {"motion": TURN})))
 
 
