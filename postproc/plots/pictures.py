@@ -32,6 +32,7 @@ TITLE_CHARACTERS = 14.0  # of a title per inch
 TITLE_LINES = 3  # of a title at most
 MAPS_HEIGHT = 4.4  # inches, of a figure with maps side by side
 MOST_VIEWS = 4  # surfaces obliquely side by side
+MOST_ROWS = 18  # design rows from above: of more, maps would be smaller than their bumps can be seen in
 FAR_WORN = 30.0  # -, over the median of the runs' depths: a run worn deeper does not set their scale
 TOP_SHARE = 0.99  # of the worn area: deeper spots share the top colour
 
@@ -77,11 +78,17 @@ def worn_surface(
     quantity: str,
     remarks: Sequence[str],
 ) -> Figure:
-    """Draw worn surfaces, all runs on one colour scale: obliquely and from above for one row, else from above only.
+    """Draw worn surfaces, all runs on one colour scale: obliquely and from above for one row, else from above only; of
+    more than MOST_ROWS rows the first and the least worn ones.
 
     meshes: by run; runs: run, row, surface; depths: as from `tables.depths.depth_table`; quantity: what the colour is.
     """
-    several = runs["row"].nunique() > 1
+    rows = list(dict.fromkeys(runs["row"]))
+    if len(rows) > MOST_ROWS:
+        runs = _least_worn(runs, depths, MOST_ROWS)
+        remarks = [*remarks, f"of {len(rows)} rows the first and the {MOST_ROWS - 1} least worn ones are shown"]
+        depths = depths[depths["run"].isin(runs["run"])]
+    several = len(rows) > 1
     figure = new_figure([*remarks, *_beyond_remark(depths)], LARGEST_HEIGHT, compressed=several)
     limits, bounds = colour_limits(depths), common_bounds(meshes.values())
     unit, ticks = scaled("µm", limits[1])
@@ -97,6 +104,15 @@ def worn_surface(
         grid[1, column].set(xlabel="Across the travel, x (mm)", ylabel="y (mm)\nbed moves to +y →")
     _colour_bar(figure, grid, limits, f"{quantity} ({unit})", ticks)
     return figure
+
+
+def _least_worn(runs: pd.DataFrame, depths: pd.DataFrame, most: int) -> pd.DataFrame:
+    """Return the runs of the first design row and of those whose least worn run has the smallest mean depth."""
+    worn = depths.assign(volume=depths["depth_um"] * depths["area_mm2"]).groupby("run")[["volume", "area_mm2"]].sum()
+    mean = runs["run"].map(worn["volume"] / worn["area_mm2"])
+    first, *others = mean.groupby(runs["row"], sort=False).min().items()
+    kept = [first, *sorted(others, key=lambda each: each[1])[: most - 1]]
+    return runs[runs["row"].isin([row for row, _ in kept])].reset_index(drop=True)
 
 
 def surface_views(

@@ -35,11 +35,14 @@ def short_sections(sections: Sequence[Section], docs: Path, name: str, published
 
 
 def _short(section: Section, blocks: Sequence[Block], docs: Path, name: str, published: str) -> Iterator[Block]:
-    """Yield the blocks of a section, links in place of what is long."""
+    """Yield the blocks of a section, links in place of what is long, one in place of all published numbers."""
+    elsewhere = [block for block in blocks if published and isinstance(block, Table) and block.beside_source is True]
     for index, block in enumerate(blocks):
-        if isinstance(block, Table) and block.beside_source is True and published:
+        if elsewhere and block is elsewhere[0]:
             ours = f"[Published numbers beside ours]({PUBLISHED_PAGE}), with verdicts"
-            yield Text(f"{ours}: {len(block.data)} ([table]({published_file(published)})).")
+            yield Text(f"{ours}: {sum(len(each.data) for each in elsewhere)} ([table]({published_file(published)})).")
+        elif any(block is each for each in elsewhere):
+            continue
         elif isinstance(block, Table) and len(block.data) > MOST_ROWS:
             file = _path(docs, f"{name}_{block.file or _place(section, index)}.csv")
             block.data.to_csv(file, index=False, float_format=SIX_DIGITS)

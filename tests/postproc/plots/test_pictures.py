@@ -147,6 +147,19 @@ def test_names_of_many_settings_stay_in_their_columns(mesh):
     assert 18 * views[0].get_window_extent().width ** 2 > FILLED * figure.bbox.width * figure.bbox.height
 
 
+def test_of_too_many_rows_the_first_and_the_least_worn_are_drawn(mesh):
+    """Of a row more than are drawn the deepest worn one is left out, unless it is the first, and the remarks say so."""
+    names = [f"O{k}_convex" for k in range(pictures.MOST_ROWS + 1)]
+    runs = pd.DataFrame({"run": names, "row": [name[:-7] for name in names], "surface": "convex"})
+    table = depth_table({"": mesh}, True)
+    deep = {names[0]: 9.0, names[5]: 3.0}
+    depths = pd.concat([table.assign(run=run, depth_um=deep.get(run, 1.0) * table["depth_um"]) for run in names])
+    figure = pictures.worn_surface(dict.fromkeys(names, mesh), runs, True, depths, "Wear depth", REMARKS)
+    assert {axes.get_title() for axes in figure.axes} - {""} == set(runs["row"]) - {"O5"}
+    told = f"of {len(names)} rows the first and the {pictures.MOST_ROWS - 1} least worn ones are shown"
+    assert remarks_of(figure) == "; ".join([*REMARKS, told])
+
+
 def test_figure_of_the_bed(mesh):
     """The bed is coloured by speed in m/s; its table holds the particles drawn, in mm."""
     random = np.random.default_rng(2)

@@ -48,6 +48,16 @@ def test_published_numbers_stand_on_their_page(tmp_path, listed, kept):
         assert "(published_numbers.md)" in block.text and "(published/chute_results_quick.csv)" in block.text
 
 
+def test_one_line_leads_to_all_published_numbers_of_a_section(tmp_path):
+    """A section with claims and numbers says once how many both are, in place of the first; the rest stays."""
+    claims, numbers = pd.DataFrame({"finding": ["less", "more"]}), pd.DataFrame({"finding": ["force", "wear", "spin"]})
+    tables = [Table(data, name, beside_source=True) for data, name in ((claims, "claims"), (numbers, "numbers"))]
+    sections = [Section("Beside the source", [tables[0], Text("Margins are ours."), tables[1]])]
+    (section,) = short_sections(sections, tmp_path, NAME, "circular_tester_results_quick.md")
+    led, words = section.blocks
+    assert "with verdicts: 5 (" in led.text and words.text == "Margins are ours."
+
+
 def test_cards_repeat_nothing(tmp_path):
     """They go where a verdict in words begins the page, and with them a section of nothing else."""
     wear = Section("Wear", [Cards([("0.6", "over plain")])])
