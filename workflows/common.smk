@@ -10,6 +10,7 @@ from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
+from bulkwear.workflows.config.packings import possible_packings
 from bulkwear.workflows.config.published_tables import check_published
 from bulkwear.workflows.config.rounds import read_round
 from bulkwear.workflows.config.run_checks import check_files

@@ -10,12 +10,15 @@ import itertools
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.config.layers import ConfigError, Layer
 from bulkwear.workflows.config.optimise import optimise_of
 from bulkwear.workflows.config.until import first_packings, until_of
 from bulkwear.workflows.engine.decks import SMALLEST_SEED, primes
+
+if TYPE_CHECKING:
+    from bulkwear.workflows.config.design import Study
 
 PACKINGS = "packings"  # key of the settings, and column of designs whose rows have numbers of their own
 SEED_SPACING = 1000  # the solver takes a few primes above a seed; gaps between primes up to 2e9 are below 300
@@ -63,6 +66,15 @@ def wanted_packings(rows: Sequence[Layer], settings: Mapping[str, Any]) -> int:
     further = [until.most_packings] if until else [search.confirming_packings] if search else []
     most = max(settings[PACKINGS], *further) if further else settings[PACKINGS]
     return max(row.values.get(PACKINGS, most) for row in rows)
+
+
+def possible_packings(study: Study) -> dict[str, int]:
+    """Return {setting: packings} that a study has rows for, by the largest of their numbers."""
+    numbers: dict[str, int] = {}
+    for name in (str(row["row"]) for row in study.design_rows):
+        setting = study.setting_of[name]
+        numbers[setting] = max(numbers.get(setting, 0), study.packing_of[name])
+    return numbers
 
 
 def without_packings(rows: Sequence[Layer]) -> Packings:

@@ -69,18 +69,27 @@ def answers(summary: pd.DataFrame) -> dict[str, Estimate]:
 
 
 def next_round(
-    until: Until, found: Mapping[str, Estimate], packings: Mapping[str, int], finished: Mapping[str, bool], hours: float
+    until: Until,
+    found: Mapping[str, Estimate],
+    packings: Mapping[str, int],
+    possible: Mapping[str, int],
+    finished: Mapping[str, bool],
+    hours: float,
 ) -> dict[str, Any]:
     """Return what a round decides, JSON-able: `packings` by setting, which settings are `finished`, whether that is
     `enough`, the `widths` (-) there are, and a sentence.
 
-    found: by setting that is looked at; packings: that there are, also of settings with a number of their own
+    found: by setting that is looked at; packings: that there are, by number; possible: that a setting has rows for,
+    which is what there is of one with a number of its own
     finished: settings whose last packings these are; hours: core hours that the solver has taken for all of them
     """
     wanted, last = dict(packings), {name: finished.get(name, False) for name in found}
     for name, one in found.items():
         if not last[name]:
-            wanted[name], last[name] = next_number(one, until.width, until.most_packings)
+            number, last[name] = next_number(one, until.width, until.most_packings)
+            without_value = packings[name] - one.packings
+            wanted[name] = max(min(number + without_value, until.most_packings, possible[name]), packings[name])
+            last[name] |= wanted[name] == packings[name]
     added = sum(wanted[name] - packings[name] for name in packings)
     share = hours / max(sum(packings.values()), 1)
     short = added > 0 and hours + added * share > until.most_core_h
@@ -89,7 +98,9 @@ def next_round(
         added = 0
     widths = {name: one.width() for name, one in found.items() if one.known}
     widest = max(widths, key=widths.get, default="")
-    said = f"widest interval: {100.0 * widths[widest]:.2g} % of {widest}" if widest else "no interval yet"
+    percent = 100.0 * widths.get(widest, 0.0)
+    told = f"{percent:.0f}" if percent >= 100.0 else f"{percent:.2g}"
+    said = f"widest interval: {told} % of {widest}" if widest else "no interval yet"
     said += f" with {packings[widest]} packings" if widest else ""
     if short:
         said += f"; the budget of {until.most_core_h:g} core hours ends here, {hours:.2g} are used"

@@ -9,11 +9,12 @@ from bulkwear.workflows.config.until import answers, next_round
 from bulkwear.workflows.engine.job import project_job, write_table
 
 with project_job(snakemake.log[0]):
-    files, rows = snakemake.input, snakemake.params.rows
+    files, rows, possible = snakemake.input, snakemake.params.rows, snakemake.params.possible
     write_table(Path(snakemake.output.design), rows)
     summary = summary_table(snakemake.output.design, files.wear)
     packings = {setting: int(count) for setting, count in summary.groupby("setting")["packing"].max().items()}
     finished = read_round(files.before[0])["finished"] if files.before else {}
-    decided = next_round(snakemake.params.until, answers(summary), packings, finished, core_hours(files.costs))
+    hours = core_hours(files.costs)
+    decided = next_round(snakemake.params.until, answers(summary), packings, possible, finished, hours)
     Path(snakemake.output.decided).write_text(json.dumps(decided, indent=1) + "\n", encoding="utf-8")
     print(f"{snakemake.wildcards.study}: {decided['said']}.")

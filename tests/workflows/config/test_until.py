@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.workflows.config.design import ConfigError, load_study
+from bulkwear.workflows.config.packings import possible_packings
 from bulkwear.workflows.config.until import Until, answers, next_round, until_of
 
 ASKED = {"width_fraction": 0.05, "most_packings": 12, "most_core_h": 3}
@@ -25,10 +26,11 @@ def summary(**ratios):
     return pd.DataFrame(rows)
 
 
-def decided(hours=1.0, finished=(), **ratios):
+def decided(hours=1.0, finished=(), possible=None, **ratios):
     found = answers(summary(**ratios))
     packings = {setting: len(values) for setting, values in ratios.items()}
-    return next_round(UNTIL, found, packings, dict.fromkeys(finished, True), hours)
+    possible = dict.fromkeys(packings, UNTIL.most_packings) | (possible or {})
+    return next_round(UNTIL, found, packings, possible, dict.fromkeys(finished, True), hours)
 
 
 def test_what_a_study_tells_is_patterned_over_plain_wear():
@@ -68,9 +70,36 @@ def test_a_round_that_the_budget_does_not_hold_is_not_begun():
 
 
 def test_a_setting_with_packings_of_its_own_keeps_them():
-    """It is not looked at."""
-    found = next_round(UNTIL, answers(summary(R9=WIDE)), {"R9": 4, "mesh": 1}, {}, 0.1)
-    assert found["packings"] == {"R9": 8, "mesh": 1}
+    """There are no more rows of it: it is finished, costs nothing, and rounds end with those that may have more."""
+    found = decided(possible={"mesh": 1}, hours=1.4, R9=WIDE, mesh=(0.5,))
+    assert found["packings"] == {"R9": 8, "mesh": 1} and found["finished"] == {"R9": False, "mesh": True}
+    assert found["said"].endswith("; 4 packings more") and not found["enough"]
+    alone = decided(possible={"mesh": 1}, mesh=(0.5,))
+    assert alone["enough"] and alone["packings"] == {"mesh": 1}
+
+
+@pytest.mark.parametrize("study", ["circular_tester", "tester_sensitivity"])
+def test_rows_that_are_there_say_how_many_packings_a_setting_may_have(study):
+    """Those with a number of their own that many, the others what the goal allows."""
+    loaded = load_study(study, overrides={"until": ASKED})
+    assert set(possible_packings(loaded).values()) == {1, ASKED["most_packings"]}
+    only = load_study("demo", overrides={"until": ASKED, "rows": ["R5-2"]})
+    assert possible_packings(only) == {"R5": 2}
+
+
+@pytest.mark.parametrize("without", [0.0, float("nan")])
+def test_a_packing_without_a_value_is_not_taken_back(without):
+    """It is no packing of the interval, so another one takes its place."""
+    found = decided(R9=(*WIDE[:3], without))
+    assert found["packings"] == {"R9": 5} and not found["enough"]
+    assert decided(R9=(*WIDE * 2, *WIDE[:3], without))["packings"] == {"R9": 12}
+
+
+def test_a_width_beyond_the_mean_is_no_power_of_ten():
+    """It is told in whole per cent, not as 2e+03 %."""
+    scattered = (0.1, 1.0, 0.1, 3.0)
+    width = answers(summary(R9=scattered))["R9"].width()
+    assert width > 1.0 and f"widest interval: {100.0 * width:.0f} % of R9" in decided(R9=scattered)["said"]
 
 
 def test_a_study_has_all_packings_that_it_may_need():
