@@ -290,6 +290,11 @@ def known_rows(study, decided):
     return all(rows[name] == rows[name] | values for name, values in read_round(decided)["rows"].items())
 
 
+def rows_by_setting(study):
+    """How many packings each setting of a study may have."""
+    return possible_packings(study.design_rows, study.setting_of, study.packing_of)
+
+
 def study_of_round(wildcards):
     """The study with the packings that a round looks at."""
     study, number = study_of(wildcards), int(wildcards.round)

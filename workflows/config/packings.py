@@ -10,15 +10,12 @@ import itertools
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from bulkwear.workflows.config.layers import ConfigError, Layer
 from bulkwear.workflows.config.optimise import optimise_of
 from bulkwear.workflows.config.until import first_packings, until_of
 from bulkwear.workflows.engine.decks import SMALLEST_SEED, primes
-
-if TYPE_CHECKING:
-    from bulkwear.workflows.config.design import Study
 
 PACKINGS = "packings"  # key of the settings, and column of designs whose rows have numbers of their own
 SEED_SPACING = 1000  # the solver takes a few primes above a seed; gaps between primes up to 2e9 are below 300
@@ -68,12 +65,17 @@ def wanted_packings(rows: Sequence[Layer], settings: Mapping[str, Any]) -> int:
     return max(row.values.get(PACKINGS, most) for row in rows)
 
 
-def possible_packings(study: Study) -> dict[str, int]:
-    """Return {setting: packings} that a study has rows for, by the largest of their numbers."""
+def possible_packings(
+    design_rows: Iterable[Mapping[str, Any]], setting_of: Mapping[str, str], packing_of: Mapping[str, int]
+) -> dict[str, int]:
+    """Return {setting: packings} that a study has rows for, by the largest of their numbers.
+
+    design_rows, setting_of, packing_of: of the study
+    """
     numbers: dict[str, int] = {}
-    for name in (str(row["row"]) for row in study.design_rows):
-        setting = study.setting_of[name]
-        numbers[setting] = max(numbers.get(setting, 0), study.packing_of[name])
+    for name in (str(row["row"]) for row in design_rows):
+        setting = setting_of[name]
+        numbers[setting] = max(numbers.get(setting, 0), packing_of[name])
     return numbers
 
 

@@ -126,7 +126,7 @@ checkpoint further_packings:
     params:
         until=lambda wildcards: study_of(wildcards).until,
         rows=lambda wildcards: study_of_round(wildcards).design_table(),
-        possible=lambda wildcards: possible_packings(study_of(wildcards)),
+        possible=lambda wildcards: rows_by_setting(study_of(wildcards)),
     message:
         "Are the intervals of {wildcards.study} narrow enough?"
     script:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import isnan
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from bulkwear.workflows.cases.calibration.responses import (
     RECOMMENDED,
     information_table,
     interval_table,
+    is_searched,
     shares_at,
 )
 from bulkwear.workflows.report.sections import CARE, SOUND, WEAK, Light
@@ -36,6 +38,8 @@ def in_family(statements: pd.DataFrame, pair: str) -> str:
     """Return whether a pair is kept by what was measured, by the share of the posterior that fits better."""
     rows = statements[statements["pair"] == pair]
     share = float(rows["denser_share"].iloc[0])
+    if isnan(share):
+        return f"The {spoken(pair)} pair ({values_of(rows)}) lies outside of the range that was searched."
     verdict = "is rejected" if share > FAMILY_SHARE else "is in the family"
     fits = f"{number(PERCENT * share, 3)} % of the posterior fits better"
     return f"The {spoken(pair)} pair ({values_of(rows)}) {verdict}: {fits} (allowed: {PERCENT * FAMILY_SHARE:.0f} %)."
@@ -95,8 +99,7 @@ def rejected(done: Calibrated) -> list[str]:
     names = done.problem.names
     if not set(names) <= set(done.published):
         return []
-    points = done.problem.to_unit(done.published[names].to_numpy(float))
-    inside = done.published[((points >= 0.0) & (points <= 1.0)).all(axis=1)]
+    inside = done.published[is_searched(done.problem, done.published[names].to_numpy(float))]
     if inside.empty:
         return []
     shares = shares_at(done.problem, done.known, inside[names].to_numpy(float))

@@ -171,6 +171,17 @@ def measured_are_responses(run: CheckedRun) -> Fault | None:
     return None
 
 
+def tests_tell_something(run: CheckedRun) -> Fault | None:
+    """Of every test at least one response was measured: nothing else of it says anything about the parameters."""
+    calibration = run.settings["calibration"]
+    known = set(published(calibration["measured"])["response"])
+    for test in calibration["tests"]:
+        if not known & set(RESPONSES[test]):
+            names = " or ".join(RESPONSES[test])
+            return "calibration.tests", f"with {test} a table {calibration['measured']} that has {names}"
+    return None
+
+
 def pairs_are_known(run: CheckedRun) -> Fault | None:
     """The compared pair and that of the sizes are rows of the table of pairs simulated before."""
     calibration = run.settings["calibration"]
@@ -216,6 +227,7 @@ class Calibration(Case):
         ranges_in_order,
         measured_are_numbers,
         measured_are_responses,
+        tests_tell_something,
         pairs_are_known,
         initial_below_most,
     )
@@ -262,8 +274,10 @@ class Calibration(Case):
         return [f"{test}/deck.in" for test in self.run_templates]
 
     def simulation_folders(self, folder: Path, runs: Sequence[str]) -> list[Path]:
-        """Return the folders of all bulk tests, each with a single cycle."""
-        return sorted(path for path in (folder / boxes.SIMULATIONS).iterdir() if path.is_dir())
+        """Return the folders of the bulk tests that its tables are made of, each with a single cycle."""
+        from bulkwear.workflows.cases.calibration.simulations import used_folders  # slow to import
+
+        return used_folders(folder)
 
     def work(
         self, runs: Sequence[Run], beds: Mapping[str, Parameters], bed_of: Mapping[str, str], ranks: int

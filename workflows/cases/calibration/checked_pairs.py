@@ -76,8 +76,8 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=1, help="simulations at the same time")
     given = parser.parse_args()
     work_here()
-    asked = {"fidelity": given.fidelity, "calibration": {"tests": [given.test], "repeats": given.seeds}}
-    run = load_study(given.study, overrides=asked).all_runs[0].parameters
+    run = load_study(given.study, overrides={"fidelity": given.fidelity}).all_runs[0].parameters
+    run = {**run, "calibration": {**run["calibration"], "tests": [given.test], "repeats": given.seeds}}
     print(check_pair(run, given.pair, Path("results") / given.study, given.workers).to_string(index=False))
 
 

@@ -19,9 +19,10 @@ from bulkwear.postproc.inference.loop import Posterior, Request, calibrate, pack
 from bulkwear.postproc.inference.problem import Experiment, Parameter, Problem
 from bulkwear.workflows.cases.calibration.boxes import SHEAR_BOX, SIMULATIONS, simulated_width, test_of
 from bulkwear.workflows.cases.calibration.responses import FOUND_FIRST, RECOMMENDED, read_measured
-from bulkwear.workflows.cases.calibration.simulations import answer, simulate_all
+from bulkwear.workflows.cases.calibration.simulations import BLOCKED, FOLDERS, answer, packings_of, simulate_all
 from bulkwear.workflows.cases.calibration.told import told_sentences
 from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.bulk_simulations import simulation_folder
 from bulkwear.workflows.engine.case import Parameters
 from bulkwear.workflows.engine.job import Progress
 
@@ -44,10 +45,14 @@ def problem_of(parameters: Parameters, measured: str | Path) -> Problem:
     )
 
 
-def pair_of(pairs: pd.DataFrame, row: str, names: Sequence[str], parameters: Parameters) -> dict[str, float]:
-    """Return the values of a row of a table of pairs; a parameter that it does not have keeps the material's value."""
-    found = pairs[pairs["row"] == row].iloc[0]
-    present = test_of(parameters, SHEAR_BOX, {}, 0)
+def pair_of(
+    pairs: pd.DataFrame, row: str, names: Sequence[str], parameters: Parameters, kind: str = ""
+) -> dict[str, float]:
+    """Return the values of a row of a table of pairs; a parameter of which it has none keeps the value that it has in a
+    test of that kind, the calibration's last one where none is named.
+    """
+    found = pairs[pairs["row"] == row].iloc[0].dropna()
+    present = test_of(parameters, kind or parameters["calibration"]["tests"][-1], {}, 0)
     return {name: float(found[name]) if name in found else _value_at(present, name) for name in names}
 
 
@@ -85,6 +90,7 @@ def run_calibration(
         known = posterior(problem, everything_of(problem, result.simulations, repeats))
         again = repeated(parameters, {RECOMMENDED: values_at(problem, known)}, folder, workers, say)
         repeats = pd.concat([repeats, again], ignore_index=True)
+    result.simulations[FOLDERS] = folders_of(result.simulations, parameters, problem.names)
     for sentence in told_sentences(problem, posterior(problem, everything_of(problem, result.simulations, repeats))):
         say(sentence)
     return result.simulations, result.shares, repeats
@@ -130,7 +136,25 @@ def repeated(
         {"pair": name, "test": kind, "seed": seed, **pairs[name], **answer(each)}
         for (name, kind, seed), each in zip(asked, found, strict=True)
     ]
-    return pd.DataFrame(rows)
+    table = pd.DataFrame(rows)
+    table[FOLDERS] = folders_of(table, parameters, list(next(iter(pairs.values()))))
+    return table
+
+
+def folders_of(table: pd.DataFrame, parameters: Parameters, names: Sequence[str]) -> list[str]:
+    """Return the names of the folders of every row's simulations, those that arches blocked before the one that flowed.
+
+    table: test, seed, the parameters' names, and BLOCKED where there may be some
+    """
+    rows = table if BLOCKED in table else table.assign(**{BLOCKED: 0})
+    tests = [
+        test_of(parameters, test, dict(zip(names, values, strict=True)), seed)
+        for test, seed, values in zip(rows["test"], rows["seed"], rows[list(names)].to_numpy(float), strict=True)
+    ]
+    return [
+        " ".join(simulation_folder(packing, Path()).name for packing in packings_of(test)[: int(blocked) + 1])
+        for test, blocked in zip(tests, rows[BLOCKED], strict=True)
+    ]
 
 
 def repeat_seeds(parameters: Parameters) -> list[int]:
@@ -148,17 +172,18 @@ def run_box_sizes(runs: Mapping[str, Parameters], pairs: Path, folder: Path, wor
     with state.only_driver(folder / SIMULATIONS, say):
         found = simulate_all(tests, folder / SIMULATIONS, workers, say)
     angles = [each.responses[SHEAR_ANGLE] for each in found]
-    return pd.DataFrame(
-        [
-            _size_row(name, parameters, [angle for (row, _), angle in zip(asked, angles, strict=True) if row == name])
-            for name, parameters in runs.items()
-        ]
-    )
+    kept = [simulation_folder(test, Path()).name for test in tests]
+    rows = []
+    for name, parameters in runs.items():
+        own = [number for number, (row, _) in enumerate(asked) if row == name]
+        folders = {FOLDERS: " ".join(kept[number] for number in own)}
+        rows.append(_size_row(name, parameters, [angles[number] for number in own]) | folders)
+    return pd.DataFrame(rows)
 
 
 def _pair_of_sizes(parameters: Parameters, table: pd.DataFrame) -> dict[str, float]:
     asked = parameters["calibration"]
-    return pair_of(table, asked["sizes_pair"], [each["name"] for each in asked["parameters"]], parameters)
+    return pair_of(table, asked["sizes_pair"], [each["name"] for each in asked["parameters"]], parameters, SHEAR_BOX)
 
 
 def _size_row(name: str, parameters: Parameters, angles: Sequence[float]) -> dict[str, Any]:

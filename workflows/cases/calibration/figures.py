@@ -79,10 +79,10 @@ def heaps(job: Job) -> Any:
     told=TOLD,
     digits=6,
     caption="""
-    Mean of the surrogate (colours and white lines), our simulations (circles, same colours), pairs simulated in Yan
-    2022, Tables 3.3, 3.5 and 3.6 (diamonds) and the measured value within one standard deviation (hatched, Yan 2022,
-    Table 3.1). Fig 3.6 of the source is the same map of the shear angle, on which it kept pairs between 36 and 38
-    degrees. Where a circle differs from the colour around it, its packing does: one simulation is one packing.
+    Mean of the surrogate (colours and white lines), our simulations (circles, same colours), pairs that others
+    simulated (diamonds) and the measured value within one standard deviation (hatched); the tables beside name their
+    sources. Fig 3.6 of Yan 2022 is the same map of the shear angle of river gravel, on which pairs between 36 and 38
+    degrees are kept. Where a circle differs from the colour around it, its packing does: one simulation is one packing.
     """,
 )
 def response_maps(job: Job) -> Any:
@@ -131,7 +131,7 @@ def calibration_sensitivity(job: Job) -> Any:
     caption="""
     Regions that hold 50 and 95 % of the posterior: every pair in them gives the measured responses, within what
     measurement and surrogate leave open. All pairs in the range count as equally likely before. Star: recommended, the
-    pair of the inner region nearest to the mean. Diamond: the pair of Yan 2022, Table 3.6. Rolling friction is in the
+    pair of the inner region nearest to the mean. Diamond: the pair that it is compared with. Rolling friction is in the
     stated convention.
     """,
 )
@@ -153,8 +153,8 @@ def family(job: Job) -> Any:
     digits=6,
     caption="""
     Responses of both pairs simulated here with several packings (mean and its standard uncertainty), what the surrogate
-    had predicted there, and the measured band (Yan 2022, Table 3.1). Open diamond: what the source simulated with its
-    pair (Yan 2022, Table 3.6).
+    had predicted there, and the measured band. Open diamond: what others simulated with the compared pair. The tables
+    beside name the sources.
     """,
 )
 def pairs_against_bands(job: Job) -> Any:
@@ -176,9 +176,9 @@ def pairs_against_bands(job: Job) -> Any:
     inputs={"sizes": "results/{study}/box_sizes.csv", "before": SIZES_BEFORE},
     digits=6,
     caption="""
-    Shear angle at sliding and rolling friction 0.24 in boxes of other lengths (filled as high as they are long) and
-    widths of the periodic slice; bars are the standard deviation between packings. Dashed: Yan 2022, Table 3.3, with
-    particles of true size in slices of 20 mm.
+    Shear angle at the pair of calibration.sizes_pair in boxes of other lengths (filled as high as they are long) and
+    widths of the periodic slice; bars are the standard deviation between packings. Dashed: Yan 2022, Table 3.3, at
+    sliding and rolling friction 0.24, with particles of true size in slices of 20 mm.
     """,
 )
 def box_sizes(job: Job) -> Any:

@@ -13,7 +13,6 @@ import pandas as pd
 from bulkwear.postproc.inference.posterior import FAMILY_SHARE
 from bulkwear.postproc.inference.told import told_table
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate
-from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
 from bulkwear.workflows.cases.calibration.case import PUBLISHED, published
 from bulkwear.workflows.cases.calibration.checked_pairs import CHECKED, checked_means
 from bulkwear.workflows.cases.calibration.outcome import Calibrated, read_calibrated
@@ -26,7 +25,7 @@ from bulkwear.workflows.cases.calibration.responses import (
     parameter_name,
     response_name,
 )
-from bulkwear.workflows.cases.calibration.simulations import BLOCKED, cost_table
+from bulkwear.workflows.cases.calibration.simulations import BLOCKED, FOLDERS, cost_table, used_folders
 from bulkwear.workflows.cases.calibration.told import told_sentences
 from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.report.sections import Block, Cards, Listing, Pictures, Points, Section, Table, Text
@@ -104,7 +103,9 @@ def cards(done: Calibrated, intervals: pd.DataFrame) -> list[tuple[str, str]]:
     """Return the few numbers that answer the question."""
     share = float(done.statements.set_index("pair").loc[[done.compared], "denser_share"].iloc[0])
     other = ", ".join(f"{value:g}" for value in done.pairs[done.compared].values())
-    where = "in" if share <= FAMILY_SHARE else "outside"
+    place = "in" if share <= FAMILY_SHARE else "outside"
+    fits = (f"{100.0 * share:.3g} %", f"of the posterior fits better than ({other}): {place} the family")
+    searched = fits if np.isfinite(share) else ("not searched", f"where ({other}) lies, outside of the range")
     return [
         *(
             (
@@ -114,7 +115,7 @@ def cards(done: Calibrated, intervals: pd.DataFrame) -> list[tuple[str, str]]:
             for row in intervals.itertuples()
         ),
         (str(len(done.simulations)), "simulations until the stopping rule or the limit"),
-        (f"{100.0 * share:.3g} %", f"of the posterior fits better than ({other}): {where} the family"),
+        searched,
     ]
 
 
@@ -155,12 +156,19 @@ def _sources(done: Calibrated) -> dict[str, str]:
 def _pair_sentence(done: Calibrated, pair: str) -> str:
     part = done.statements[done.statements["pair"] == pair]
     values = ", ".join(f"{value:.2f}" for value in done.pairs[pair].values())
-    told = "; ".join(
-        f"{response_name(row.response)} {row.simulated:.2f} ± {row.simulated_uncertainty:.2f} against"
-        f" {row.measured:g} ± {row.measured_deviation:g}, {row.inside} ({row.deviations:+.1f} standard deviations)"
-        for row in part[part["seeds"] > 0].itertuples()
-    )
+    told = "; ".join(beside_measured(row) for row in part[part["seeds"] > 0].itertuples())
     return f"The {pair.replace('_', ' ')} pair ({values}) gives: {told}."
+
+
+def beside_measured(row: Any) -> str:
+    """Return a response of a pair, beside what was measured where it was; row: of `responses.statement_table`."""
+    said = f"{response_name(row.response)} {row.simulated:.2f} ± {row.simulated_uncertainty:.2f}"
+    if np.isnan(row.measured):
+        return f"{said}, not measured"
+    return (
+        f"{said} against {row.measured:g} ± {row.measured_deviation:g}, {row.inside} ({row.deviations:+.1f} standard"
+        " deviations)"
+    )
 
 
 def sentences(done: Calibrated) -> list[str]:
@@ -176,7 +184,7 @@ def sentences(done: Calibrated) -> list[str]:
             f"Before any pair was repeated the simulations led to ({values}); with its repeats and those of the"
             f" {done.compared} pair they lead to the recommended one."
         )
-    blocked = int(sum(table[BLOCKED].sum() for table in (done.simulations, done.repeats) if BLOCKED in table))
+    blocked = int(done.everything[BLOCKED].sum()) if BLOCKED in done.everything else 0
     if blocked:
         said.append(
             f"An arch blocked the opening in {blocked} packing(s), whose test was done again with another packing;"
@@ -223,7 +231,10 @@ def checked_pairs(done: Calibrated) -> list[Block]:
     """Return pairs simulated in tests that the calibration did not use, and their means beside the measured bands."""
     rows = pd.read_csv(done.folder / CHECKED)
     return [
-        Table(_named(rows.astype({"seed": str})), note="Each pair has the scale and width that its row names."),
+        Table(
+            _named(rows.drop(columns=FOLDERS, errors="ignore").astype({"seed": str})),
+            note="Each pair has the scale and width that its row names.",
+        ),
         Table(_named(checked_means(rows, done.problem))),
     ]
 
@@ -257,7 +268,8 @@ def simulations(done: Calibrated) -> list[Block]:
     """Return how many simulations there were and why, and all of them."""
     counts = done.simulations.groupby(["test", "why"], sort=False).size()
     told = ", ".join(f"{number} {test.replace('_', ' ')} ({why})" for (test, why), number in counts.items())
-    return [Text(f"Simulations: {told}."), Table(_named(done.simulations.astype({"seed": str})), "simulations")]
+    table = done.simulations.drop(columns=FOLDERS, errors="ignore").astype({"seed": str})
+    return [Text(f"Simulations: {told}."), Table(_named(table), "simulations")]
 
 
 def deciding(folder: Path) -> list[Block]:
@@ -267,7 +279,7 @@ def deciding(folder: Path) -> list[Block]:
 
 def sizes(folder: Path) -> Block:
     """Return the shear angle in boxes of other sizes, ours and the published ones."""
-    ours = pd.read_csv(folder / "box_sizes.csv").drop(columns="row")
+    ours = pd.read_csv(folder / "box_sizes.csv").drop(columns=["row", FOLDERS], errors="ignore")
     theirs = published("shear_box_sizes.csv").rename(
         columns={"shear_angle_deg": "mean", "deviation_deg": "deviation", "source": "varied"}
     )
@@ -280,7 +292,7 @@ def sizes_beside_source(folder: Path) -> pd.DataFrame:
     """
     ours, theirs = pd.read_csv(folder / "box_sizes.csv"), published("shear_box_sizes.csv")
     widest = ours.loc[ours["length_mm"].idxmax(), "width_mm"]
-    ours = ours[ours["width_mm"] == widest].set_index("length_mm")
+    ours = ours[ours["width_mm"] == widest].drop_duplicates("length_mm").set_index("length_mm")
     rows = []
     for line in theirs[theirs["length_mm"] < theirs["length_mm"].max()].to_dict("records"):
         found = ours.reindex([line["length_mm"]]).iloc[0]
@@ -312,7 +324,7 @@ def use(folder: Path, study: str) -> list[Block]:
 
 def cost(folder: Path) -> list[Block]:
     """Return what the simulations took, and what was forecast if all that are allowed were needed."""
-    table, forecast = cost_table(folder / SIMULATIONS), pd.read_csv(folder / "forecast.csv")
+    table, forecast = cost_table(used_folders(folder)), pd.read_csv(folder / "forecast.csv")
     note = (
         f"LIGGGHTS took {table['solver_s'].sum():.4g} s by the clock, on whatever else the machine was doing. Forecast "
         f"for the most simulations allowed, their time until rest estimated: {forecast['solver_s'].sum():.4g} s of "

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.calibration import boxes
 from bulkwear.workflows.cases.calibration.case import calibration_box
+from bulkwear.workflows.engine.derived import PERIODIC
 from bulkwear.workflows.engine.grains import SPHERE
 from bulkwear.workflows.report.sections import Light, Section
+from bulkwear.workflows.report.sentences import listed
 
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
@@ -102,31 +104,17 @@ def remarks(study: Study) -> list[str]:
 def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return (what, how) of what is simpler here than in the laboratory."""
     settings = study["settings"]
-    solver, draw_down, shape = settings["solver"], settings["draw_down"], settings["bulk"]["shape"]
-    grains = "Spheres" if shape == SPHERE else f"Clumps of spheres ({shape}) as large as spheres"
+    solver, tests = settings["solver"], settings["calibration"]["tests"]
     return [
-        (
-            "Coarse-grained particles",
-            f"{grains}, {settings['particle_scale']:g} times as large as the real ones, in the same boxes. Slopes are "
-            "then fewer particles high: angles scatter more between packings, which the calibration counts as noise.",
-        ),
+        *_coarse_graining(settings),
         (
             "Rolling friction stands for shape",
             f"Model {solver['rolling_friction']}; coefficients are for the {solver['rolling_radius']} radius of the "
             "particle and valid in this model and convention only."
             + (CREEPS if solver["rolling_friction"] == "cdt" else ""),
         ),
-        (
-            "Opening of the draw-down test",
-            "The source calls it square and tells no size. A "
-            f"{OPENINGS[draw_down['opening']].format(draw_down['opening_mm'])} is assumed, chosen so that the "
-            "published pair discharges in about the published time. How discharge times differ between pairs is a "
-            "result; their level is not.",
-        ),
-        (
-            "Periodic slices",
-            "Boxes have no front and back here; particles that leave a slice on one side come back on the other.",
-        ),
+        *(_opening(settings["draw_down"]) if boxes.DRAW_DOWN in tests else ()),
+        ("Periodic slices", _slices(settings, tests)),
         (
             "Discrepancy of the model",
             "What the model is off by with the right parameters is normal about 0, with a standard deviation of "
@@ -138,3 +126,35 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
             "Each response has a surrogate of its own, and measured responses are taken to err independently.",
         ),
     ]
+
+
+def _coarse_graining(settings: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return what is to be said of particles larger than the real ones, and of their shape."""
+    scale, shape = settings["particle_scale"], settings["bulk"]["shape"]
+    grains = "Spheres" if shape == SPHERE else f"Clumps of spheres ({shape}) as large as spheres"
+    if scale == 1.0:
+        return [("Shape of particles", f"{grains}, as large as the real ones.")]
+    larger = (
+        f"{grains}, {scale:g} times as large as the real ones, in the same boxes. Slopes are then fewer particles "
+        "high: angles scatter more between packings, which the calibration counts as noise."
+    )
+    return [("Coarse-grained particles", larger)]
+
+
+def _opening(draw_down: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return what is assumed of a draw-down test's opening."""
+    assumed = OPENINGS[draw_down["opening"]].format(draw_down["opening_mm"])
+    told = (
+        f"The source calls it square and tells no size. A {assumed} is assumed. How discharge times differ between "
+        "pairs is a result; their level is not."
+    )
+    return [("Opening of the draw-down test", told)]
+
+
+def _slices(settings: Mapping[str, Any], tests: Sequence[str]) -> str:
+    """Return which boxes have no front and back; that of the box sizes is always a shear box."""
+    ends = {test: settings[test].get("front_and_back", PERIODIC) for test in dict.fromkeys([boxes.SHEAR_BOX, *tests])}
+    open_ended = listed([test.replace("_", " ") for test, end in ends.items() if end == PERIODIC])
+    walled = listed([test.replace("_", " ") for test, end in ends.items() if end != PERIODIC])
+    told = f"No front and back: {open_ended}. Particles that leave a slice on one side come back on the other."
+    return f"{told} With walls there: {walled}." if walled else told

@@ -153,12 +153,12 @@ def statement_table(
 
     repeats: as from `repeat_table`. deviations: simulated minus measured, over the measured standard deviation; inside:
     at most one of these, or closer than the standard uncertainty of the simulated mean; denser_share: of the posterior
-    in pairs that fit better, at most 0.95 in the family.
+    in pairs that fit better, at most 0.95 in the family, NaN of a pair outside of the range that was searched.
     """
     rows = []
     for pair, values in pairs.items():
         point = np.array([[values[name] for name in problem.names]])
-        (share,) = shares_at(problem, known, point)
+        (share,) = shares_at(problem, known, point) if is_searched(problem, point)[0] else (np.nan,)
         for name, (mean, variance) in predictions(known.surrogates, problem.to_unit(point)).items():
             found = repeats[(repeats["pair"] == pair) & (repeats["response"] == name)]
             aim = problem.measured.get(name)
@@ -195,6 +195,12 @@ def _inside(simulated: float, uncertainty: float, aim: Measured) -> str:
     return "within its uncertainty" if away <= BAND * np.hypot(aim.deviation, uncertainty) else "outside"
 
 
+def is_searched(problem: Problem, pairs: np.ndarray) -> np.ndarray:
+    """Return which (k,) of some pairs lie in the range that was searched; pairs: (k, p) values of the parameters."""
+    points = problem.to_unit(pairs)
+    return ((points >= 0.0) & (points <= 1.0)).all(axis=1)
+
+
 def shares_at(problem: Problem, known: Posterior, pairs: np.ndarray) -> np.ndarray:
     """Return the share (k,) of the posterior in points denser than k pairs; pairs: (k, p) values of the parameters."""
     at = predictions(known.surrogates, problem.to_unit(pairs))
@@ -217,7 +223,7 @@ def repeat_table(repeats: pd.DataFrame, responses: Sequence[str]) -> pd.DataFram
             uncertainty = max(deviation, single) / np.sqrt(len(values)) if several else single
             head = {"pair": pair, "response": name, "seeds": len(values), "mean": float(values.mean())}
             rows.append(head | {"deviation": deviation, "uncertainty": float(uncertainty)})
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=["pair", "response", "seeds", "mean", "deviation", "uncertainty"])
 
 
 def with_bands(repeats: pd.DataFrame, measured: Mapping[str, Measured]) -> pd.DataFrame:

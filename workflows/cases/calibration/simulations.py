@@ -21,7 +21,7 @@ from bulkwear.postproc.flow.free_surface import FreeSurfaceError
 from bulkwear.postproc.flow.outflow import BlockedError, OutflowError
 from bulkwear.postproc.flow.wall_shear import WallShearError
 from bulkwear.postproc.inference.loop import packing_seed
-from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, opening_length
+from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, SIMULATIONS, opening_length
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.bulk_simulations import inputs_digest, simulated, simulation_folder
 from bulkwear.workflows.engine.bulk_tests import time_step
@@ -32,6 +32,8 @@ from bulkwear.workflows.engine.solver import SolverError
 PACKINGS = 3  # of a test, before it is given up because arches block all of them
 NEXT_PACKING = 1000  # numbers on, where no calibration has a packing of its own
 BLOCKED = "blocked_packings"  # column of a table of simulations
+FOLDERS = "folders"  # column of one: names of the folders of a row's simulations, with blanks between
+USED_BY = ("simulations.csv", "repeats.csv", "box_sizes.csv", "checked_pairs.csv")  # tables with that column
 
 
 def boxes_of(test: Mapping[str, Any]) -> Boxes:
@@ -121,9 +123,23 @@ def answer(measurement: Measurement) -> dict[str, float]:
     return dict(measurement.responses) | uncertainties | {BLOCKED: measurement.blocked}
 
 
-def cost_table(folder: Path) -> pd.DataFrame:
-    """Return number, solver seconds, particles and mean steps of the simulations of each kind below a folder."""
-    states = [read_record(path) for path in sorted(folder.glob(f"*/cycle_000/{state.STATE}"))]
+def used_folders(folder: Path) -> list[Path]:
+    """Return the folders of the simulations that a calibration's tables are made of; beside them lie those of other
+    fidelities and settings, which do not count. All of them where a table, of an earlier version, does not tell.
+
+    folder: results/<study>
+    """
+    tables = [pd.read_csv(folder / name) for name in USED_BY if (folder / name).is_file()]
+    there = sorted(path for path in (folder / SIMULATIONS).iterdir() if path.is_dir())
+    if any(FOLDERS not in table for table in tables):
+        return there
+    names = {name for table in tables for each in table[FOLDERS] for name in each.split()}
+    return [path for path in there if path.name in names]
+
+
+def cost_table(folders: Sequence[Path]) -> pd.DataFrame:
+    """Return number, solver seconds, particles and mean steps of the simulations of each kind in their folders."""
+    states = [read_record(state.cycle_folder(folder, 0) / state.STATE) for folder in folders]
     table = pd.DataFrame([{"test": found["test"]["kind"].replace("_", " "), **found["cost"]} for found in states])
     return table.groupby("test", as_index=False).agg(
         simulations=("steps", "size"),

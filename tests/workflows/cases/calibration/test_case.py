@@ -59,6 +59,15 @@ def test_what_cannot_be_calibrated_is_refused(overrides, words):
         load_study("calibration", overrides={"fidelity": "standard", **overrides})
 
 
+def test_a_test_of_which_nothing_was_measured_is_refused():
+    """It would say nothing of the parameters: the responses that it has are named."""
+    words = (
+        r"calibration\.tests is .*allowed is with wall_shear a table gravel_tests\.csv that has wall_friction_angle_deg"
+    )
+    with pytest.raises(ConfigError, match=words):
+        study(calibration={"tests": ["shear_box", "wall_shear"]})
+
+
 def test_ranges_must_be_ranges():
     """A low above its high, or a parameter named twice, is refused."""
     for second in ({"name": ROLLING, "low": 0.7, "high": 0.1}, {"name": SLIDING, "low": 0.1, "high": 0.7}):
@@ -120,12 +129,18 @@ def test_published_data_are_those_of_the_source():
 
 
 def test_a_calibration_has_the_decks_of_its_tests_and_no_runs(tmp_path):
-    """Decks are those of all tests; simulations are the folders of bulk tests, not those of design rows."""
+    """Decks are those of all tests; simulations are the bulk tests that its tables name, not those of design rows or of
+    other settings; all that are there where tables of an earlier version name none.
+    """
     found = study()
     runs = [run.name for run in found.runs]
     assert found.case.deck_files(runs, []) == [f"{test}/deck.in" for test in ("shear_box", "draw_down", "wall_shear")]
     assert not found.case.wears and found.beds == {}
-    for name in ("shear_box_0", "draw_down_1"):
+    there = ["draw_down_1", "shear_box_0", "shear_box_2"]
+    for name in there:
         (tmp_path / "simulations" / name).mkdir(parents=True)
     (tmp_path / "simulations" / "lock").touch()
-    assert [path.name for path in found.case.simulation_folders(tmp_path, runs)] == ["draw_down_1", "shear_box_0"]
+    pd.DataFrame({"folders": ["shear_box_0", "draw_down_1 shear_box_0"]}).to_csv(tmp_path / "repeats.csv")
+    assert [path.name for path in found.case.simulation_folders(tmp_path, runs)] == there[:2]
+    pd.DataFrame({"seed": [1]}).to_csv(tmp_path / "simulations.csv")
+    assert [path.name for path in found.case.simulation_folders(tmp_path, runs)] == there

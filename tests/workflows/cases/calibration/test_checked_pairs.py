@@ -22,6 +22,15 @@ def test_a_found_pair_is_checked_in_another_test(done, formula, tmp_path):
         check_pair(run, "nobody", tmp_path, 1)
 
 
+def test_a_test_without_a_measured_response_has_rows_and_no_means(done, formula, tmp_path):
+    """Nothing stands beside its wall friction angle, so that later pages have rows and no band."""
+    run = study().runs[0].parameters
+    run = {**run, "calibration": {**run["calibration"], "tests": ["wall_shear"]}}
+    shutil.copy(done.folder / "repeats.csv", tmp_path)
+    table = check_pair(run, RECOMMENDED, tmp_path, 1)
+    assert table["wall_friction_angle_deg"].notna().all() and checked_means(table, done.problem).empty
+
+
 def test_only_packings_of_one_pair_and_test_are_averaged(done):
     """Rows of another value of the pair, or of another width, have means of their own: 35, 37 and 39."""
     marks = {"pair": RECOMMENDED, "test": "draw_down", "particle_scale": 4.0}

@@ -7,6 +7,7 @@ from bulkwear.postproc.inference.loop import packing_seed, posterior
 from bulkwear.workflows.cases.calibration.driver import (
     compared_pairs,
     everything_of,
+    folders_of,
     pair_of,
     problem_of,
     read_posterior,
@@ -15,6 +16,7 @@ from bulkwear.workflows.cases.calibration.driver import (
     run_calibration,
 )
 from bulkwear.workflows.cases.calibration.responses import FOUND_FIRST, RECOMMENDED, read_measured
+from bulkwear.workflows.cases.calibration.simulations import BLOCKED, FOLDERS
 from bulkwear.workflows.engine.decks import primes
 from tests.support.calibration_study import MEASURED, PAIRS, ROLLING, SLIDING, study
 
@@ -41,6 +43,32 @@ def test_a_parameter_that_a_pair_does_not_have_keeps_the_materials_value():
     name = "particle.contact.restitution"
     found = pair_of(pd.read_csv(PAIRS), "calibrated", [SLIDING, name], study().runs[0].parameters)
     assert found[name] == study().materials["particles"]["river_gravel"]["contact"]["restitution"]
+
+
+def test_a_wall_that_a_pair_does_not_tell_is_that_of_the_tests():
+    """Draw-down and wall shear test have steel, the shear box, which is none of them, Perspex; an empty cell of the
+    table is no value.
+    """
+    wall, asked = "wall_material.contact.sliding_friction", {"tests": ["draw_down"]}
+    loaded = study(calibration=asked, draw_down={"wall_material": "steel"}, fidelity="standard")
+    run, walls = loaded.runs[0].parameters, loaded.materials["walls"]
+    pairs = pd.read_csv(PAIRS)
+    assert pair_of(pairs, "calibrated", [wall], run)[wall] == walls["steel"]["contact"]["sliding_friction"]
+    box = loaded.settings["shear_box"]["wall_material"]
+    assert pair_of(pairs, "calibrated", [wall], run, "shear_box")[wall] == walls[box]["contact"]["sliding_friction"]
+    empty = pairs.assign(**{SLIDING: float("nan")})
+    present = loaded.materials["particles"]["river_gravel"]["contact"]["sliding_friction"]
+    assert pair_of(empty, "calibrated", [SLIDING], run)[SLIDING] == present
+
+
+def test_a_row_names_the_folders_of_its_simulations(done):
+    """That of its packing, after those that arches blocked."""
+    run, names = done.parameters, done.problem.names
+    kept = done.simulations[FOLDERS].str.split()
+    assert all(folders[0].startswith("shear_box_") and len(folders) == 1 for folders in kept)
+    again = folders_of(done.simulations.assign(**{BLOCKED: 2}), run, names)
+    assert [each.split()[0] for each in again] == [folders[0] for folders in kept]
+    assert all(len(set(each.split())) == 3 for each in again)
 
 
 def test_the_recommended_pair_gives_what_was_measured(done):
@@ -101,8 +129,8 @@ def test_what_no_response_tells_is_said(formula, tmp_path, capsys, measured):
     wall, kinds = "wall_material.contact.sliding_friction", ["shear_box", "wall_shear"]
     names = [{"name": name, "low": 0.1, "high": 0.7} for name in (SLIDING, wall)]
     counts = {"initial": {"shear_box": 5, "wall_shear": 8}, "most": {"shear_box": 7, "wall_shear": 8}, "repeats": 1}
-    asked = {"tests": kinds if measured else kinds[:1], "parameters": names, **counts}
-    run = study(calibration=asked, shear_box={"wall_material": "steel"}).runs[0].parameters
+    run = study(calibration={"parameters": names, **counts}, shear_box={"wall_material": "steel"}).runs[0].parameters
+    run = {**run, "calibration": {**run["calibration"], "tests": kinds if measured else kinds[:1]}}
     table = pd.read_csv(MEASURED)[["response", "value", "deviation"]]
     table.loc[len(table)] = ["wall_friction_angle_deg", 20.0, 0.3]
     table.to_csv(tmp_path / "measured.csv", index=False)

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +12,19 @@ import yaml
 from matplotlib.figure import Figure
 
 from bulkwear.postproc.flow.bulk_test import RESPONSES
+from bulkwear.workflows.cases.calibration.answers import in_family
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
-from bulkwear.workflows.cases.calibration.findings import DISCHARGE, measured_beside, opening_words, sizes_beside_source
+from bulkwear.workflows.cases.calibration.findings import (
+    DISCHARGE,
+    beside_measured,
+    cards,
+    measured_beside,
+    opening_words,
+    sizes_beside_source,
+)
 from bulkwear.workflows.cases.calibration.page import remarks
-from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
+from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, interval_table
+from bulkwear.workflows.cases.calibration.simulations import FOLDERS
 from bulkwear.workflows.report import markdown
 from bulkwear.workflows.report.page import write_page
 from bulkwear.workflows.report.page_parameters import page_of, page_parameters, page_templates
@@ -46,8 +56,11 @@ def test_figures_say_that_grains_are_clumps():
 
 
 def test_published_angles_of_shorter_boxes_stand_beside_ours(tmp_path):
-    """In the slice of the longest box alone; a box that was not simulated has no angle. t is 12.71 for two packings."""
-    rows = [(200.0, 85.0, 37.0), (150.0, 85.0, 30.0), (150.0, 53.0, 99.0), (135.0, 85.0, 36.0)]
+    """In the slice of the longest box alone, which two rows may be; a box that was not simulated has no angle.
+
+    Student's t of two packings is 12.71.
+    """
+    rows = [*[(200.0, 85.0, 37.0)] * 2, (150.0, 85.0, 30.0), (150.0, 53.0, 99.0), (135.0, 85.0, 36.0)]
     table = pd.DataFrame(rows, columns=["length_mm", "width_mm", "mean"]).assign(row="a", deviation=0.5, seeds=2)
     table.to_csv(tmp_path / "box_sizes.csv", index=False)
     found = sizes_beside_source(tmp_path).set_index("setting")
@@ -90,16 +103,19 @@ def make(product, folder):
 
 @pytest.fixture(scope="module")
 def folder(done, tmp_path_factory):
-    """The folder of the study with figures, summary, materials, forecast and what one simulation left."""
+    """The folder of the study with figures, summary, materials, forecast and what one simulation left, beside one of
+    other settings.
+    """
     folder = tmp_path_factory.mktemp("results") / "calibration"
     shutil.copytree(done.folder, folder)
     pd.DataFrame({"solver_s": [3.0, 4.0], "by": "rates of a test"}).to_csv(folder / "forecast.csv", index=False)
-    cycle = folder / SIMULATIONS / "shear_box_0" / "cycle_000"
-    cycle.mkdir(parents=True)
     cost = {"steps": 1000, "solver_s": 2.0, "particles": 30}
     told = {"test": {"kind": "shear_box"}, "cost": cost, "solver_warnings": {"a small step": 3}}
-    (cycle / "state.json").write_text(json.dumps(told))
-    (cycle / "log.liggghts").write_text("LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0, compiled once)\n")
+    for name in (done.simulations[FOLDERS][0], "shear_box_of_other_settings"):
+        cycle = folder / SIMULATIONS / name / "cycle_000"
+        cycle.mkdir(parents=True)
+        (cycle / "state.json").write_text(json.dumps(told))
+        (cycle / "log.liggghts").write_text("LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0, compiled once)\n")
     with pytest.MonkeyPatch.context() as patch:
         room = "bulkwear.workflows.cases.calibration"
         patch.setattr(f"{room}.outcome.recommended_heaps", lambda done: ([], [pd.DataFrame({"response": []})]))
@@ -141,6 +157,29 @@ def test_sections_tell_every_response(folder, done):
     assert len(simulated.data) == len(done.simulations)
 
 
+def test_a_response_that_was_not_measured_stands_without_a_band(done):
+    """Its mean is told, with no number that is none."""
+    rows = done.statements.assign(measured=np.nan, measured_deviation=np.nan, deviations=np.nan, inside="")
+    said = [beside_measured(row) for row in rows.itertuples()]
+    assert all(each.startswith("Shear angle, shear box (°) ") and each.endswith(", not measured") for each in said)
+    assert not any("nan" in each for each in said)
+    assert " against 36 ± 0.4, " in beside_measured(next(done.statements.itertuples()))
+
+
+def test_a_compared_pair_that_was_not_searched_is_neither_kept_nor_rejected(done):
+    """Where its friction is outside of the range nothing was simulated, so that the surrogate says nothing there."""
+    sliding = done.problem.names[0]
+    beyond = {
+        **done.pairs,
+        done.compared: {**done.pairs[done.compared], sliding: 2.0 * done.problem.parameters[0].high},
+    }
+    told = replace(done, pairs=beyond)
+    assert np.isnan(told.statements.set_index("pair").loc[done.compared, "denser_share"])
+    assert cards(told, interval_table(told.problem, told.known, beyond[done.compared]))[-1][0] == "not searched"
+    assert in_family(told.statements, done.compared).endswith("lies outside of the range that was searched.")
+    assert "in the family" in in_family(done.statements, done.compared)
+
+
 def test_discharge_times_are_told_with_the_opening_that_is_assumed():
     """Beside those that others simulated: form and size, as the study has them."""
     assert DISCHARGE in RESPONSES["draw_down"]
@@ -154,7 +193,7 @@ def test_sections_show_every_figure_once(folder):
 
 
 def test_sections_tell_the_cost_and_its_forecast(folder):
-    """One simulation of 2 s, against the 7 s of the forecast."""
+    """One simulation of 2 s, against the 7 s of the forecast; that of other settings does not count."""
     (table,) = sections(folder)["Cost of the simulations"]
     assert table.data[["test", "simulations", "solver_s"]].to_numpy().tolist() == [["shear box", 1, 2.0]]
     assert "LIGGGHTS took 2 s" in table.note and "estimated: 7 s" in table.note and "rates of a test" in table.note
@@ -204,3 +243,14 @@ def test_grains_are_told_by_their_shape(shape, words):
     material = {"material": OF_ANY_MODEL, "shape": shape}
     told = page_parameters(study(solver={"rolling_friction": "cdt"}, bulk=material))
     assert dict(page_of("calibration").simplifications(told))["Coarse-grained particles"].startswith(words)
+
+
+def test_what_is_simplified_is_that_of_the_boxes():
+    """Particles of true size are not called larger, and a draw-down test with walls in front is told to have them."""
+    walled = {"draw_down": {"front_and_back": "walls"}, "calibration": {"tests": ["shear_box", "draw_down"]}}
+    told = dict(page_of("calibration").simplifications(page_parameters(study(fidelity="paper", **walled))))
+    assert "as large as the real ones" in told["Shape of particles"]
+    assert "No front and back: shear box." in told["Periodic slices"]
+    assert told["Periodic slices"].endswith("With walls there: draw down.")
+    quick = dict(page_of("calibration").simplifications(page_parameters(study())))
+    assert "fewer particles" in quick["Coarse-grained particles"] and "Opening of the draw-down test" not in quick

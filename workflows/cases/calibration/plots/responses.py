@@ -73,7 +73,7 @@ def response_maps(
     label_all(figure, len(responses) > 1, parameter_name(names[0]), parameter_name(names[1]))
     handles = [
         Line2D([], [], linestyle="", marker="o", color="white", markeredgecolor="black", label="simulated here"),
-        Line2D([], [], linestyle="", marker="D", color="white", markeredgecolor=OTHERS, label="simulated in Yan 2022"),
+        Line2D([], [], linestyle="", marker="D", color="white", markeredgecolor=OTHERS, label="simulated by others"),
         Patch(facecolor="none", edgecolor=BAND_COLOUR, hatch="///", label="measured, ± one standard deviation"),
     ]
     figure.legend(handles=handles, loc="outside upper center", ncols=3)
@@ -93,10 +93,12 @@ def _draw_map(
 
     Colours reach as far as our values; published ones stand beside their marks, because some lie far outside.
     """
-    inside = [published[column].between(grid[column].min(), grid[column].max()) for column in pair]
+    nothing = published.iloc[:0].assign(**dict.fromkeys(pair, pd.Series(dtype=float)))
+    there = published if set(pair) <= set(published) else nothing
+    inside = [there[column].between(grid[column].min(), grid[column].max()) for column in pair]
     points = {
         marker: table[table[name].notna()]
-        for marker, table in (("o", simulations), ("D", _with(published[np.logical_and(*inside)], name)))
+        for marker, table in (("o", simulations), ("D", _with(there[np.logical_and(*inside)], name)))
     }
     values = np.concatenate([grid[name], points["o"][name]])
     levels = np.linspace(values.min(), values.max(), 15)
@@ -274,7 +276,7 @@ def _explain_bands(figure: Figure) -> None:
         "measured, ± one standard deviation": Patch(color=OTHER_COLOUR, alpha=0.25),
         "simulated here, mean of seeds": ours,
         "surrogate": Line2D([], [], marker="_", color=OTHER_COLOUR, **look),
-        "simulated in Yan 2022, Table 3.6": Line2D([], [], marker="D", color="white", markeredgecolor=OTHERS, **look),
+        "compared pair, simulated by others": Line2D([], [], marker="D", color="white", markeredgecolor=OTHERS, **look),
     }
     together = {tuple: HandlerTuple(ndivide=None, pad=0.6)}
     figure.legend(

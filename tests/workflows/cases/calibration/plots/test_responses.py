@@ -44,6 +44,15 @@ def test_response_maps_name_axes_and_units():
     assert remarks_of(figure) == REMARKS[0]
 
 
+def test_pairs_of_other_parameters_are_not_marked():
+    """Where others varied no such parameter their pairs have no place on the map."""
+    simulations, published = grid().iloc[[3, 12]], pd.DataFrame({NAMES[0]: [0.21], "shear_angle_deg": [35.7]})
+    figure = plots.response_maps(grid(), simulations, {}, published, NAMES, REMARKS)
+    for axes in figure.axes[:2]:
+        marks = [len(each.get_offsets()) for each in axes.collections if isinstance(each, PathCollection)]
+        assert sum(marks) == len(simulations)
+
+
 def test_pairs_stand_beside_the_measured_band():
     """The band is the measured value within one deviation; each pair's mean stands in its place."""
     row = {"response": "shear_angle_deg", "measured": 36.0, "measured_deviation": 0.4, "simulated_uncertainty": 0.5}
