@@ -11,6 +11,7 @@ import pandas as pd
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.display import DEGREES, MILLIMETRES
+from bulkwear.workflows.cases.circular_tester.sensitivity import most_reached
 from bulkwear.workflows.report.sentences import PERCENT, listed, measured, spoken, with_interval
 from bulkwear.workflows.report.text import number, range_text
 
@@ -281,8 +282,11 @@ turning, passing = relative_to_plain("relative_angular_speed", "turn"), relative
 
 
 def reached(table: pd.DataFrame) -> str:
-    """Return how many published numbers the reference and the best setting reach; table: `sensitivity_table`."""
+    """Return how many published numbers the reference and the settings with most of them reach; table:
+    `sensitivity_table`.
+    """
     counts, asked = table.groupby("pair", sort=False)["reached"].sum(), table["key"].nunique()
-    first, best = counts.index[0], counts.idxmax()
-    said = f"The {first} reaches {counts.iloc[0]} of {asked} published numbers"
-    return f"{said}." if counts[best] == counts.iloc[0] else f"{said}, the best setting, {best}, {counts[best]}."
+    said, best = f"The {counts.index[0]} reaches {counts.iloc[0]} of {asked} published numbers", most_reached(counts)
+    if counts.index[0] in best:
+        return f"{said}." if len(counts) == 1 else f"{said}, no setting more."
+    return f"{said}; {listed(best)} {'reach' if len(best) > 1 else 'reaches'} {counts.max()}, the most."

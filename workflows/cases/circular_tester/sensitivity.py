@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bulkwear.workflows.cases.circular_tester.runs import SURFACE, VARIED, TesterRun, pairs_of
+from bulkwear.workflows.report.text import range_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -228,21 +229,27 @@ def effects_table(table: pd.DataFrame, changes: Mapping[str, Mapping[str, str]])
 
 
 def sentences(table: pd.DataFrame, changes: Mapping[str, Mapping[str, str]]) -> list[str]:
-    """Return how many published numbers each setting reaches, and what is left of the factor in the plain volume."""
+    """Return how many published numbers the settings with most of them reach, which are out of reach of all, and what
+    is left of the factor in the plain volume.
+    """
     reached = table.groupby("pair", sort=False)["reached"].sum()
-    count, best = table["key"].nunique(), reached.idxmax()
-    usual, found = (_plain_volume(table, pair) for pair in (REFERENCE, best))
-    missed = table[(table["pair"] == best) & ~table["reached"]]
-    listed = "; ".join(
-        f"{row.quantity} ({row.value:.3g} {row.unit})".replace(" -)", ")") for row in missed.itertuples()
-    )
+    best, count = most_reached(reached), table["key"].nunique()
+    settings = "; ".join(words_of(changes[pair]) for pair in best)
+    left = [_plain_volume(table, pair) for pair in best]
+    of_all = table.groupby("key", sort=False).agg(quantity=("quantity", "first"), reached=("reached", "any"))
+    missed = "; ".join(of_all.loc[~of_all["reached"], "quantity"])
     return [
-        f"The reference reaches {reached[REFERENCE]} of {count} published numbers, the best setting"
-        f" ({words_of(changes[best])}) {reached[best]}.",
-        f"The source's plain sample loses {usual:.3g} times what ours does in the reference, and {found:.3g} times in"
-        " the best setting.",
-        f"Not reached there: {listed or 'none'}.",
+        f"The reference reaches {reached[REFERENCE]} of {count} published numbers; most, {reached.max()}, are reached"
+        f" by {len(best)} of {len(reached)} settings ({settings}).",
+        f"The source's plain sample loses {_plain_volume(table, REFERENCE):.3g} times what ours does in the reference,"
+        f" and {range_text(left, 3)} times where most is reached.",
+        f"Reached by no setting: {missed or 'none'}.",
     ]
+
+
+def most_reached(counts: pd.Series) -> list[str]:
+    """Return the settings that reach most published numbers; counts: of each."""
+    return [str(pair) for pair in counts.index[counts == counts.max()]]
 
 
 def words_of(changes: Mapping[str, str]) -> str:

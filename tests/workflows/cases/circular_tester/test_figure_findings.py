@@ -128,9 +128,11 @@ def test_patterns_that_are_worn_off():
 
 
 def test_published_numbers_that_settings_reach():
-    """The best setting is named where it is better than the reference."""
-    table = pd.DataFrame({"pair": ["reference"] * 2 + ["deep"] * 2, "key": ["a", "b"] * 2})
-    table = table.assign(reached=[True, False, True, True])
+    """All settings that reach most are named where that is more than the reference does."""
+    table = pd.DataFrame({"pair": ["reference"] * 2 + ["deep"] * 2 + ["thin"] * 2, "key": ["a", "b"] * 3})
+    table = table.assign(reached=[True, False, True, True, True, True])
     said = "The reference reaches 1 of 2 published numbers"
-    assert findings.reached(table) == f"{said}, the best setting, deep, 2."
+    assert findings.reached(table) == f"{said}; deep and thin reach 2, the most."
+    assert findings.reached(table.head(4)) == f"{said}; deep reaches 2, the most."
+    assert findings.reached(table.assign(reached=[True, False] * 3)) == f"{said}, no setting more."
     assert findings.reached(table.head(2)) == f"{said}."
