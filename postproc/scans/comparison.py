@@ -32,6 +32,7 @@ MEDIAN_TO_SPREAD = 1.4826  # -, of the median distance, for normal noise
 OUTLYING = 4.0  # -, spreads of its cell from which on a point has no part in a volume
 NEAR = 1e-3  # m, up to which a cell tells the depth of a triangle
 BELOW = 1e-3  # m, under the lowest point: where vertical rays begin
+LONG_NUMBER = 10  # of a row or a bump: two digits need a hyphen before or after them
 VIEWS = {"side": 1, "front": 0}  # view of a bump -> axis along the section: side along the travel, front across
 
 
@@ -157,8 +158,9 @@ def depth_of_faces(cells: pd.DataFrame, pristine: SurfaceMesh) -> np.ndarray:
 def bump_names(mesh: SurfaceMesh) -> pd.DataFrame:
     """Return the bumps of a sample as Figure 6.1 of Yan 2022 calls them: name, part, x_mm, y_mm (of their middle).
 
-    C15 is the fifth bump, counted from least x, of the row (his column) that meets the bed first. Least x is the inner
-    side of a tester whose bed turns anticlockwise, seen from above, and goes to +y over the sample.
+    C15 is the fifth bump, counted from least x, of the row (his column) that meets the bed first; from ten on a hyphen
+    stands between both numbers, as in C1-11. Least x is the inner side of a tester whose bed turns anticlockwise, seen
+    from above, and goes to +y over the sample.
     """
     part, row = mesh.cell_data["part"], mesh.cell_data["row"]
     rows = []
@@ -168,7 +170,8 @@ def bump_names(mesh: SurfaceMesh) -> pd.DataFrame:
         rows.append({"part": label, "row": row[part == label][0], "x_mm": middle[0], "y_mm": middle[1]})
     table = pd.DataFrame(rows, columns=["part", "row", "x_mm", "y_mm"])
     number = table.groupby("row")["x_mm"].rank().astype(int)
-    table.insert(0, "bump", "C" + table["row"].astype(str) + number.astype(str))
+    between = np.where((table["row"] < LONG_NUMBER) & (number < LONG_NUMBER), "", "-")
+    table.insert(0, "bump", "C" + table["row"].astype(str) + between + number.astype(str))
     return table
 
 

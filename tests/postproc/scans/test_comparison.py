@@ -121,6 +121,16 @@ def test_names_are_those_of_figure_6_1(pristine):
     assert names.loc["C22", ["x_mm", "y_mm"]].to_numpy(float) == pytest.approx([10.0, 0.0], abs=0.05)
 
 
+def test_names_of_many_bumps_are_unique():
+    """Twelve rows of twelve: a hyphen tells bump 11 of row 1 from bump 1 of row 11; short numbers need none."""
+    count = 12
+    row, number = np.divmod(np.arange(count**2), count)
+    corners = np.column_stack([number, row, np.zeros(count**2)])[:, None] + np.eye(3) / 4.0
+    labels = {"part": np.arange(1, count**2 + 1), "row": row + 1}
+    names = bump_names(SurfaceMesh(corners.reshape(-1, 3), np.arange(3 * count**2).reshape(-1, 3), labels))["bump"]
+    assert names.is_unique and {"C11", "C99", "C1-11", "C11-1"} <= set(names)
+
+
 def test_heights_are_exact_on_a_plane():
     """A tilted square, beside which there is no height."""
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [1.0, 1.0, 0.3], [0.0, 1.0, 0.2]])

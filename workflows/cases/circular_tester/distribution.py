@@ -1,7 +1,8 @@
 """Where a sample in the circular wear tester wears: by columns along the travel, shapes of a pattern and mesh.
 
 A column is what Yan 2022 (Fig 6.1) calls one: a strip across the travel, column 1 where the bed arrives. The bumps of a
-column are those of one `row` of labels; plain samples have the strips alone.
+column are those of one `row` of labels; columns meet midway between rows. Plain samples have the strips of the
+patterned one beside them.
 """
 
 from __future__ import annotations
@@ -20,7 +21,6 @@ from bulkwear.workflows.cases.circular_tester.packings import PACKING, over_pack
 from bulkwear.workflows.cases.circular_tester.runs import MESH, SIZE, SURFACE, VOLUME, TesterRun
 from bulkwear.workflows.cases.circular_tester.volume import PATTERNED, chosen, of_surface
 
-COLUMNS = 5  # of the sample of 100 x 100 mm (Fig 6.1)
 NOTHING = np.empty((0, 3))  # no scan
 SHOWN_BUMPS = ["C11", "C13", "C15"]  # of Fig 6.5 and 6.16
 MESH_BUMP = "C15"  # of Fig 6.9
@@ -37,31 +37,44 @@ def top_of(mesh: SurfaceMesh) -> SurfaceMesh:
     )
 
 
-def column_numbers(mesh: SurfaceMesh, columns: int = COLUMNS) -> np.ndarray:
-    """Column (m,) of each triangle: that of its bump, else of the strip its centroid lies in; 0 on the holder."""
-    worn = worn_faces(mesh)
-    along = centroids(mesh.points, mesh.triangles)[:, 1]
-    edge = mesh.points[np.unique(mesh.triangles[worn]), 1]
-    strip = np.floor(columns * (along - edge.min()) / np.ptp(edge)).astype(np.int64)
+def column_borders(pristine: SurfaceMesh) -> np.ndarray:
+    """Places (columns - 1,) m along the travel where the columns of a patterned sample meet."""
+    along, row = pristine.points[pristine.triangles, 1], pristine.cell_data["row"]
+    ends = pd.DataFrame({"low": along.min(axis=1), "high": along.max(axis=1)})[row > 0].groupby(row[row > 0])
+    middle = 0.5 * (ends["low"].min() + ends["high"].max()).to_numpy()
+    return 0.5 * (middle[1:] + middle[:-1])
+
+
+def borders_of(patterned: TesterRun) -> np.ndarray:
+    """`column_borders` of a run with a pattern."""
+    return column_borders(read_surface(patterned.folder / SURFACE))
+
+
+def column_numbers(mesh: SurfaceMesh, borders: np.ndarray) -> np.ndarray:
+    """Column (m,) of each triangle: that of its bump, else of the strip its centroid lies in; 0 on the holder.
+
+    borders: as from `column_borders`
+    """
+    strip = np.searchsorted(borders, centroids(mesh.points, mesh.triangles)[:, 1], side="right")
     row = mesh.cell_data["row"]
-    return np.where(worn, np.where(row > 0, row, np.clip(strip, 0, columns - 1) + 1), 0)
+    return np.where(worn_faces(mesh), np.where(row > 0, row, strip + 1), 0)
 
 
-def _by_column(mesh: SurfaceMesh, quantity: np.ndarray, columns: int) -> pd.DataFrame:
+def _by_column(mesh: SurfaceMesh, quantity: np.ndarray, borders: np.ndarray) -> pd.DataFrame:
     """Sums of a quantity (m,) per column: column, base, bumps."""
-    number = column_numbers(mesh, columns)
+    number, columns = column_numbers(mesh, borders), len(borders) + 1
     bump = mesh.cell_data["part"] > 0
     sums = [np.bincount(number[where], quantity[where], columns + 1)[1:] for where in (~bump, bump)]
     return pd.DataFrame({"column": np.arange(1, columns + 1), "base": sums[0], "bumps": sums[1]})
 
 
-def wear_by_column(meshes: Mapping[str, SurfaceMesh], columns: int = COLUMNS) -> pd.DataFrame:
+def wear_by_column(meshes: Mapping[str, SurfaceMesh], borders: np.ndarray) -> pd.DataFrame:
     """Worn volume (mm3) of base and bumps per column of every run (Fig 6.13): run, column, base_mm3, bumps_mm3.
 
-    meshes: worn surfaces by run, with `worn_volume_m3`.
+    meshes: worn surfaces by run, with `worn_volume_m3`; borders: as from `column_borders`
     """
     parts = [
-        _by_column(mesh, CUBIC_MILLIMETRES * mesh.cell_data[WORN_VOLUME], columns).assign(run=run)
+        _by_column(mesh, CUBIC_MILLIMETRES * mesh.cell_data[WORN_VOLUME], borders).assign(run=run)
         for run, mesh in meshes.items()
     ]
     table = pd.concat(parts, ignore_index=True)
@@ -109,12 +122,12 @@ def wear_by_bump(meshes: Mapping[int, SurfaceMesh]) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def force_by_column(mesh: SurfaceMesh, impulse: np.ndarray, duration: float, columns: int = COLUMNS) -> pd.DataFrame:
+def force_by_column(mesh: SurfaceMesh, impulse: np.ndarray, duration: float, borders: np.ndarray) -> pd.DataFrame:
     """Mean normal force (N) on base and bumps per column (Fig 6.22): column, base_N, bumps_N.
 
-    impulse: (m,) N s of each triangle within `duration` (s), from a load ledger.
+    impulse: (m,) N s of each triangle within `duration` (s), from a load ledger; borders: as from `column_borders`
     """
-    table = _by_column(mesh, np.asarray(impulse) / duration, columns)
+    table = _by_column(mesh, np.asarray(impulse) / duration, borders)
     return table.rename(columns={"base": "base_N", "bumps": "bumps_N"})
 
 
@@ -210,12 +223,12 @@ def surfaces_alike(runs: Sequence[TesterRun]) -> tuple[float, dict[str, SurfaceM
     return last, {run.name: next(iter(cycle_surfaces(run, [last]).values())) for run in runs}
 
 
-def mean_force_by_column(run: TesterRun, columns: int = COLUMNS) -> pd.DataFrame:
+def mean_force_by_column(run: TesterRun, borders: np.ndarray) -> pd.DataFrame:
     """Normal force by column, mean over the wear cycles: run, column, base_N, bumps_N."""
     before, parts = run.folder / SURFACE, []
     durations = np.diff(pd.read_csv(run.folder / "wear.csv")["time_s"], prepend=0.0)
     for folder, duration in zip(cycle_folders(run.folder)[1:], durations, strict=True):
         impulse = pd.read_parquet(folder / LEDGER, columns=["normal_impulse_N_s"])["normal_impulse_N_s"]
-        parts.append(force_by_column(read_surface(before), impulse, duration, columns))
+        parts.append(force_by_column(read_surface(before), impulse, duration, borders))
         before = folder / SURFACE
     return pd.concat(parts).groupby("column")[["base_N", "bumps_N"]].mean().reset_index().assign(run=run.name)

@@ -16,6 +16,7 @@ from bulkwear.workflows.cases.circular_tester.observed import Builder, Evidence,
 from bulkwear.workflows.cases.circular_tester.packings import PACKING
 from bulkwear.workflows.cases.circular_tester.volume import PATTERNED, of_surface
 
+SOURCE_COLUMNS = 5  # of its sample (Fig 6.1)
 NAMES = {"velocity_m_per_s": "velocity", "bed_height_m": "bed height", "wear_rate_m3_per_s": "wear rate"}
 
 
@@ -42,6 +43,8 @@ def _first_column(seen: Observed, claim: Claim) -> Evidence:
 
 def _plain_columns(seen: Observed, claim: Claim) -> Evidence:
     share = _columns(seen, PLAIN)
+    if reason := _other_columns(share):
+        return Evidence(reason=reason, further=_listed(share))
     away = share.columns.to_numpy(float) - share.columns.to_numpy(float).mean()
     slopes = share.to_numpy() @ away / (away @ away)
     return Evidence({"": percent(estimate(slopes * np.ptp(away)))}, further=_listed(share))
@@ -49,7 +52,15 @@ def _plain_columns(seen: Observed, claim: Claim) -> Evidence:
 
 def _plain_even(seen: Observed, claim: Claim) -> Evidence:
     share = _columns(seen, PLAIN)
+    if reason := _other_columns(share):
+        return Evidence(reason=reason, further=_listed(share))
     return Evidence({f"column {k}": estimate(share[k]) for k in share.columns})
+
+
+def _other_columns(share: pd.DataFrame) -> str:
+    """Return why columns are not those of the source, whose claims name five; nothing where they are."""
+    count = share.shape[1]
+    return "" if count == SOURCE_COLUMNS else f"claimed of {SOURCE_COLUMNS} columns, the sample is told by {count}"
 
 
 def _listed(share: pd.DataFrame) -> str:
@@ -57,7 +68,7 @@ def _listed(share: pd.DataFrame) -> str:
 
 
 def _outer_bumps(seen: Observed, claim: Claim) -> Evidence:
-    odd = seen.bumps[seen.bumps["row"] % 2 == 1].sort_values("bump")
+    odd = seen.bumps[seen.bumps["row"] % 2 == 1].sort_values("part")  # numbered row by row from one side
     of_row = odd.groupby(["row", PACKING])
     at_side = (of_row.cumcount() == 0) | (of_row.cumcount(ascending=False) == 0)
     outer, inner = (each.groupby(["row", PACKING])["volume_mm3"].mean() for each in (odd[at_side], odd[~at_side]))

@@ -50,7 +50,7 @@ def tester_columns(job: Job) -> Any:
 
     runs = [run for pair in pairs_of(runs_of(job)) for run in pair]
     shared, worn = distribution.surfaces_alike(runs)
-    each = distribution.of_runs(distribution.wear_by_column(worn), runs)
+    each = distribution.of_runs(distribution.wear_by_column(worn, distribution.borders_of(runs[0])), runs)
     table, share = distribution.columns_over_packings(each, "mm3"), distribution.share_of_bumps(each)
     theirs = published_value(*read(job, "published"), "share_of_bumps", "simulation")
     said = f"pattern {share.text(factor=100.0, unit='%')}; Yan 2022: {theirs:g} %"
@@ -130,7 +130,8 @@ def tester_force_columns(job: Job) -> Any:
     from bulkwear.workflows.cases.circular_tester.volume import PATTERNED, of_surface
 
     runs = [run for pair in pairs_of(runs_of(job)) for run in pair]
-    each = pd.concat([distribution.mean_force_by_column(run) for run in runs], ignore_index=True)
+    borders = distribution.borders_of(runs[0])
+    each = pd.concat([distribution.mean_force_by_column(run, borders) for run in runs], ignore_index=True)
     each = distribution.of_runs(each, runs)
     first = of_surface(each[each["column"] == 1], PATTERNED)
     share = estimate(first["bumps_N"] / (first["bumps_N"] + first["base_N"]))

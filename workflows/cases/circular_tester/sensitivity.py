@@ -130,10 +130,11 @@ def _of_places(patterned: TesterRun, plain: TesterRun, lost_at_184_h: float) -> 
     from bulkwear.workflows.cases.circular_tester import distribution
 
     _, worn = distribution.surfaces_alike([patterned, plain])
-    columns = distribution.wear_by_column(worn).assign(total=lambda rows: rows["base_mm3"] + rows["bumps_mm3"])
+    borders = distribution.borders_of(patterned)
+    columns = distribution.wear_by_column(worn, borders).assign(total=lambda rows: rows["base_mm3"] + rows["bumps_mm3"])
     of = {run.name: columns[columns["run"] == run.name].set_index("column") for run in (patterned, plain)}
     total, bare = of[patterned.name]["total"], of[plain.name]["total"]
-    first = distribution.mean_force_by_column(patterned).set_index("column").loc[1]
+    first = distribution.mean_force_by_column(patterned, borders).set_index("column").loc[1]
     pristine = distribution.top_of(read_surface(patterned.folder / SURFACE))
     losses = distribution.contour_losses(pristine, worn[patterned.name], distribution.SHOWN_BUMPS)
     return {

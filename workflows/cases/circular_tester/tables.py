@@ -156,7 +156,7 @@ def observed(runs: Sequence[TesterRun], tables: Mapping[str, pd.DataFrame], hour
         lost=lost,
         increments=volume.element_increments(whole_revolutions(chosen(lost, VOLUME, SIZE, RING))),
         ratios=tables["ratios"],
-        columns=distribution.of_runs(distribution.wear_by_column(worn), both),
+        columns=distribution.of_runs(distribution.wear_by_column(worn, distribution.borders_of(pairs[0][0])), both),
         bumps=distribution.wear_by_bump({patterned.packing: worn[patterned.name] for patterned, _ in pairs}),
         means=flow.flow_means(tables["series"]),
         steady_means=flow.revolution_means(tables["series"], flow.STEADINESS),

@@ -157,7 +157,8 @@ def test_the_front_that_ploughs_does_not_count(finished, run):
     force = ledger["normal_impulse_N_s"][counts].sum() / wear["time_s"]
     assert wear["mean_normal_force_N"] == pytest.approx(force, rel=ROUND_OFF)
     worn = read_surface(chain.folder / "worn_surface.vtu")
-    table = tester_distribution.wear_by_column({run: worn})
+    borders = tester_distribution.column_borders(read_surface(finished.chains["convex"].surface))
+    table = tester_distribution.wear_by_column({run: worn}, borders)
     total = pd.read_csv(chain.folder / "wear.csv")["total_worn_volume_m3"].iloc[-1]
     assert 1e-9 * table[["base_mm3", "bumps_mm3"]].to_numpy().sum() == pytest.approx(total, rel=1e-6)
 

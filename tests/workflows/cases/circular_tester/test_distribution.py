@@ -10,6 +10,7 @@ from bulkwear.meshes.sample import sample_top
 from bulkwear.postproc.mesh import SurfaceMesh, areas, centroids
 from bulkwear.postproc.tables.depths import WORN_VOLUME
 from bulkwear.workflows.cases.circular_tester.distribution import (
+    column_borders,
     column_numbers,
     columns_over_packings,
     contour_losses,
@@ -23,6 +24,7 @@ from bulkwear.workflows.cases.circular_tester.distribution import (
 )
 
 PATTERN = ConvexPattern(8e-3, 2e-3, 6e-3, 20e-3, 20e-3)  # of R9; rows 20 mm apart (Fig 6.1)
+BORDERS = np.array([-0.03, -0.01, 0.01, 0.03])  # m, of its columns
 SIDE, ELEMENT = 0.1, 4e-3  # m
 ROUNDING = 1e-12
 
@@ -47,7 +49,7 @@ def plain():
 
 def test_strips_of_a_plain_sample(plain):
     """2000 mm2 times depth of 1, 2 ... 5 um."""
-    table = wear_by_column({"plain": plain})
+    table = wear_by_column({"plain": plain}, BORDERS)
     assert table["column"].tolist() == [1, 2, 3, 4, 5]
     assert table["base_mm3"].to_numpy() == pytest.approx(2.0 * np.arange(1, 6))
     assert (table["bumps_mm3"] == 0.0).all()
@@ -55,7 +57,7 @@ def test_strips_of_a_plain_sample(plain):
 
 def test_nothing_is_lost_between_columns(convex):
     """Columns add up to the sample; bumps stay whole in their column: 5 + 4 + 5 + 4 + 5."""
-    table = wear_by_column({"convex": convex})
+    table = wear_by_column({"convex": convex}, BORDERS)
     total = 1e9 * convex.cell_data[WORN_VOLUME].sum()
     assert table[["base_mm3", "bumps_mm3"]].to_numpy().sum() == pytest.approx(total, rel=ROUNDING)
     per_bump = (convex.cell_data["part"] == 1).sum()
@@ -66,15 +68,41 @@ def test_nothing_is_lost_between_columns(convex):
 
 
 def test_columns_follow_labels_on_bumps(convex):
-    number, row = column_numbers(convex), convex.cell_data["row"]
+    number, row = column_numbers(convex, BORDERS), convex.cell_data["row"]
     assert (number[row > 0] == row[row > 0]).all()
     assert number.min() == 1
+
+
+def test_columns_of_the_source_meet_midway_between_its_rows(convex):
+    assert column_borders(convex) == pytest.approx(BORDERS, abs=ROUNDING)
+
+
+@pytest.mark.parametrize(("apart", "rows"), [(0.01, 10), (0.04, 3), (0.08, 2), (0.2, 1)])
+def test_a_pattern_has_a_column_per_row(apart, rows):
+    """Whatever the number of rows, each bump stands in the column of the base round it, and nothing is lost; a plain
+    sample has columns at the same places.
+    """
+    narrow = ConvexPattern(4e-3, 2e-3, 3e-3, apart, 20e-3)
+    mesh = sample_top(SIDE, SIDE, ELEMENT, narrow)
+    volume = 1e-9 * np.ones(len(mesh.triangles))
+    flat = flat_plate(SIDE, SIDE, 5e-3)
+    meshes = {"convex": with_volume(mesh, volume), "plain": with_volume(flat, np.full(len(flat.triangles), 1e-9))}
+    borders = column_borders(mesh)
+    table = wear_by_column(meshes, borders)
+    assert table["column"].tolist() == [*range(1, rows + 1)] * 2
+    sums = table.groupby("run")[["base_mm3", "bumps_mm3"]].sum().sum(axis=1)
+    assert sums.to_dict() == pytest.approx({"convex": len(mesh.triangles), "plain": len(flat.triangles)})
+    number, part = column_numbers(mesh, borders), mesh.cell_data["part"]
+    along = centroids(mesh.points, mesh.triangles)[:, 1]
+    for column in range(1, rows + 1):
+        base, bumps = (along[(number == column) & which] for which in (part == 0, part > 0))
+        assert base.min() < bumps.min() and bumps.max() < base.max()
 
 
 def test_the_holder_is_in_no_column(convex):
     part = np.where(centroids(convex.points, convex.triangles)[:, 1] > 0.045, -1, convex.cell_data["part"])
     mesh = SurfaceMesh(convex.points, convex.triangles, {**convex.cell_data, "part": part})
-    assert (column_numbers(mesh)[part == -1] == 0).all()
+    assert (column_numbers(mesh, BORDERS)[part == -1] == 0).all()
 
 
 def test_volume_of_every_bump(convex):
@@ -88,7 +116,7 @@ def test_volume_of_every_bump(convex):
 def test_force_is_impulse_over_time(convex):
     """The columns' forces add up to the whole impulse over the duration."""
     impulse = np.random.default_rng(1).uniform(0.0, 1e-3, len(convex.triangles))
-    table = force_by_column(convex, impulse, 0.5)
+    table = force_by_column(convex, impulse, 0.5, BORDERS)
     assert table[["base_N", "bumps_N"]].to_numpy().sum() == pytest.approx(impulse.sum() / 0.5, rel=ROUNDING)
 
 

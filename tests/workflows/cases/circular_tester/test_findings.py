@@ -74,9 +74,10 @@ def columns(packings, convex=(50.0, 20.0, 25.0, 20.0, 25.0), plain=(20.0, 21.0, 
 
 def bumps(packings, outer=30.0, inner=8.0):
     rows = [
-        {"bump": f"C{row}{n}", "row": row, "packing": packing, "volume_mm3": scattered(v, [packing, row, n])}
+        {"bump": f"C{row}{n}", "part": part, "row": row, "packing": packing}
+        | {"volume_mm3": scattered(v, [packing, row, n])}
         for packing in range(1, packings + 1)
-        for row, n in BUMPS
+        for part, (row, n) in enumerate(BUMPS, start=1)
         for v in [(outer if row % 2 else 0.5 * (outer + inner) - 5.0) if n in (1, 5) else inner]
     ]
     return pd.DataFrame(rows).sample(frac=1.0, random_state=1)
@@ -206,6 +207,29 @@ def test_too_little_says_nothing(theirs):
     assert (table.loc[keys, "verdict"] == UNSAID).all() and (table.loc[keys, "reason"] != "").all()
     assert "particle scale 4, which no pair" in table.loc["overtakes", "reason"]
     assert (table.drop(index=[*keys, "convex_quadratic"])["verdict"] == AGREES).all()
+
+
+def test_bumps_at_the_sides_are_told_apart_in_rows_of_many(theirs):
+    """Of twelve bumps the first and the twelfth are at the sides, whatever the order of their names."""
+    rows = [
+        {"bump": f"C1-{n}", "part": n, "row": 1, "packing": packing, "volume_mm3": 3.0 if n in (1, 12) else 1.0}
+        for packing in (1, 2)
+        for n in range(1, 13)
+    ]
+    evidence = BUILDERS["outer_bumps"](replace(theirs, bumps=pd.DataFrame(rows)), CLAIMS["outer_bumps"])
+    assert evidence.found["column 1"].value == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("count", [1, 3, 9])
+def test_other_columns_than_the_sources_are_told_and_judge_nothing(theirs, count):
+    """A sample with another number of rows has no five columns, which the claims on the plain sample name."""
+    wear = pd.DataFrame({"column": np.arange(1, count + 1), "base_mm3": 20.0, "bumps_mm3": 0.0})
+    parts = [wear.assign(surface=surface, packing=k) for surface in ("plain", "convex") for k in (1, 2, 3)]
+    table = verdicts(replace(theirs, columns=pd.concat(parts, ignore_index=True)))
+    keys = ["plain_columns", "plain_even"]
+    assert (table.loc[keys, "verdict"] == UNSAID).all()
+    assert set(table.loc[keys, "reason"]) == {f"claimed of 5 columns, the sample is told by {count}"}
+    assert table.loc["plain_columns", "found"] == f"columns over their mean {', '.join(['1.00'] * count)}"
 
 
 def test_a_pattern_worn_right_off_is_told_and_judges_nothing(theirs):
