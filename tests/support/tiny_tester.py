@@ -12,7 +12,7 @@ from tests.support.tiny import OF_ANY_MODEL
 TINY = {
     "packings": 1,
     "particle_scale": 4,
-    "sample": {"width_mm": 40, "length_mm": 40, "thickness_mm": 5, "element_size_mm": 2},
+    "sample": {"width_mm": 40, "length_mm": 40, "thickness_mm": 4, "element_size_mm": 2},
     "tester": {
         "inner_radius_mm": 100,
         "outer_radius_mm": 196,

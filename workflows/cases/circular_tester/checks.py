@@ -18,6 +18,7 @@ from bulkwear.workflows.config.run_checks import (
 from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
 LEAST_LAYERS = 3.0  # of particles over the sample and under it: fewer are no bed
+LEVEL_DIAMETERS = 0.5  # -, of bed and consolidator apart, in median diameters: the plate cuts no layer off, misses none
 SIDE_DIAMETERS = 2.0  # -, room between sample and side walls, in largest diameters: particles pass there without a jam
 ROUNDING = 1e-9  # relative; of revolutions times cycles
 
@@ -63,30 +64,56 @@ def sample_in_channel(run: CheckedRun) -> Fault | None:
     return "tester.channel_deg", f"at least {angle:.4g} degrees, twice the length of sample and consolidator"
 
 
+def _ends(run: CheckedRun, above: float, below: float) -> tuple[float, float]:
+    """Return the lowest and the highest point (m over its middle) of the inclined sample between two of its planes.
+
+    above, below: m, of the planes over and under the middle of its top
+    """
+    incline = run.parameters["tester"]["incline_rad"]
+    rise = 0.5 * run.parameters["sample"]["length_m"] * abs(math.sin(incline))
+    return -rise - below * math.cos(incline), rise + above * math.cos(incline)
+
+
 def enough_layers_over(run: CheckedRun) -> Fault | None:
-    """The bed over the sample has three layers of particles."""
-    if run.parameters["derived"]["layers"] >= LEAST_LAYERS:
+    """The bed over the sample's higher end has three layers of particles."""
+    _, highest = _ends(run, 0.0, 0.0)
+    least = LEAST_LAYERS * run.parameters["particle"]["median_diameter_m"] + highest
+    if run.parameters["tester"]["depth_m"] >= least:
         return None
-    least = LEAST_LAYERS * run.parameters["particle"]["median_diameter_m"]
-    return "tester.depth_mm", f"at least {millimetres(least)}, three layers of particles over the sample"
+    return "tester.depth_mm", f"at least {millimetres(least)}, three layers of particles over the sample's higher end"
 
 
 def enough_layers_under(run: CheckedRun) -> Fault | None:
-    """The bed under the sample has three layers of particles, so that it flows there too."""
-    if run.parameters["derived"]["layers_below"] >= LEAST_LAYERS:
-        return None
+    """The bed under the sample's lower end has three layers of particles, so that it flows there too."""
     tester, sample = run.parameters["tester"], run.parameters["sample"]
-    least = tester["depth_m"] + sample["thickness_m"] + LEAST_LAYERS * run.parameters["particle"]["median_diameter_m"]
-    return "tester.bed_height_mm", f"at least {millimetres(least)}, three layers of particles under the sample"
+    lowest, _ = _ends(run, 0.0, sample["thickness_m"])
+    least = tester["depth_m"] - lowest + LEAST_LAYERS * run.parameters["particle"]["median_diameter_m"]
+    if tester["bed_height_m"] >= least:
+        return None
+    return (
+        "tester.bed_height_mm",
+        f"at least {millimetres(least)}, three layers of particles under the sample's lower end",
+    )
 
 
 def consolidator_on_bed(run: CheckedRun) -> Fault | None:
-    """The consolidator levels above the sample's highest point."""
+    """The consolidator levels above the highest point of the sample, and of the particles that lie on it."""
     tester = run.parameters["tester"]
-    least = tester["bed_height_m"] - tester["depth_m"] + run.parameters["derived"]["headroom_m"]
+    _, highest = _ends(run, run.parameters["derived"]["headroom_m"], 0.0)
+    least = tester["bed_height_m"] - tester["depth_m"] + highest
     if tester["consolidator_level_m"] > least:
         return None
     return "tester.consolidator_level_mm", f"above {millimetres(least)}, the sample's highest point"
+
+
+def consolidator_levels_bed(run: CheckedRun) -> Fault | None:
+    """The consolidator levels the bed at its height: it comes down on it and does not start inside it."""
+    tester = run.parameters["tester"]
+    height, apart = tester["bed_height_m"], LEVEL_DIAMETERS * run.parameters["particle"]["median_diameter_m"]
+    if abs(tester["consolidator_level_m"] - height) <= apart:
+        return None
+    ends = " to ".join(millimetres(height + side * apart) for side in (-1.0, 1.0))
+    return "tester.consolidator_level_mm", f"{ends}, the bed's height (tester.bed_height_mm) within half a particle"
 
 
 def whole_cycles(run: CheckedRun) -> Fault | None:
@@ -121,6 +148,7 @@ TESTER_CHECKS = (
     enough_layers_over,
     enough_layers_under,
     consolidator_on_bed,
+    consolidator_levels_bed,
     element_resolves_sample,
     pattern_fits,
     element_resolves_pattern,

@@ -156,15 +156,23 @@ def test_the_trough_is_closed_and_holds_the_bed(tmp_path):
         ({"tester": {"channel_deg": 40}}, "tester.channel_deg is 40 for row plain, allowed is at least 54.2 degrees"),
         (
             {"tester": {"depth_mm": 30}},
-            "tester.depth_mm is 30 for row plain, allowed is at least 31.8 mm, three layers",
+            "tester.depth_mm is 30 for row plain, allowed is at least 32.498 mm, three layers",
         ),
         (
             {"tester": {"bed_height_mm": 70}},
-            "tester.bed_height_mm is 70 for row plain, allowed is at least 71.8 mm, three",
+            "tester.bed_height_mm is 70 for row plain, allowed is at least 71.4956 mm, three",
         ),
         (
             {"tester": {"consolidator_level_mm": 37}},
-            "consolidator_level_mm is 37 for row plain, allowed is above 38.272 mm",
+            "consolidator_level_mm is 37 for row plain, allowed is above 38.9",
+        ),
+        (
+            {"tester": {"bed_height_mm": 80}},
+            "consolidator_level_mm is 72 for row plain, allowed is 74.7 mm to 85.3 mm, the bed's height (tester.bed",
+        ),
+        (
+            {"tester": {"consolidator_level_mm": 78}},
+            "consolidator_level_mm is 78 for row plain, allowed is 66.7 mm to 77.3 mm, the bed's height (tester.bed",
         ),
         ({"sample": {"element_size_mm": 3}}, "sample.element_size_mm is 3 for row convex, allowed is at most 2 mm"),
         ({"sliding": {"revolutions": 1.3}}, "revolutions is 1.3 for row plain, allowed is a multiple of 1/2"),
@@ -179,6 +187,25 @@ def test_what_cannot_be_is_refused_in_one_sentence(changes, sentence, monkeypatc
     with pytest.raises(ConfigError) as fault:
         tiny_tester(**changes)
     assert sentence in str(fault.value)
+
+
+def test_a_tilt_takes_room_over_and_under_the_sample():
+    """By half the sample's length times its sine, up or down alike, and the holder turns with it."""
+    coarse = {"fidelity": "quick", "rows": ["plain"], "particle_scale": 3}
+    study = load_study("circular_tester", overrides=coarse)
+    settings, of = study.settings, study.settings["tester"]
+    particle = 1e3 * study.run("plain").parameters["particle"]["median_diameter_m"]
+    for incline in (30, -30):
+        for length, depth, key in ((250, of["depth_mm"], "bed_height_mm"), (200, 30, "depth_mm")):
+            rise = 0.5 * length * math.sin(math.radians(30))
+            holder = settings["sample"]["thickness_mm"] * math.cos(math.radians(30))
+            least = 3 * particle + rise + (depth + holder if key == "bed_height_mm" else 0)
+            tester = {"incline_deg": incline, "depth_mm": depth, "channel_deg": 150}
+            changes = {"sample": {"length_mm": length}, "tester": tester}
+            with pytest.raises(
+                ConfigError, match=rf"tester\.{key} is .* for row plain, allowed is at least {least:.6g}"
+            ):
+                load_study("circular_tester", overrides=coarse | changes)
 
 
 def test_a_ring_has_less_room_for_corners():
