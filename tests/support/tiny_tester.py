@@ -1,8 +1,10 @@
 """A circular wear tester small enough for tests: 700 particles, a sample of 40 mm, two cycles, some seconds."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from bulkwear.workflows.config.design import Study, load_study
 from bulkwear.workflows.report.products import job_of, outputs_of, paths_of, products_of, told_to, write_product
@@ -46,16 +48,22 @@ def tiny_tester(**changes) -> Study:
     return load_study("circular_tester", overrides={"fidelity": "quick", "rows": list(ROWS), **settings})
 
 
-def make_products(study: Study, root: Path, names: Iterable[str], remarks: list[str]) -> None:
-    """Make figures and tables of a study by name, as their rules do; its results lie below root/results."""
+def make_products(
+    study: Study, root: Path, names: Iterable[str], remarks: list[str], told: Mapping[str, Any] = MappingProxyType({})
+) -> None:
+    """Make figures and tables of a study by name, as their rules do; its results lie below root/results.
+
+    told: what they are told instead of what the study says
+    """
     for name in names:
         product = products_of(study.case)[name]
         files = {key: _below(root, paths_of(source, study)) for key, source in product.inputs.items()}
         outputs = {key: root / path for key, path in outputs_of(product, study.name).items()}
         for path in outputs.values():
             path.parent.mkdir(parents=True, exist_ok=True)
-        told = json.loads(json.dumps(told_to(product, study)))
-        write_product(product, job_of(files, told, remarks), outputs)
+        asked = json.loads(json.dumps(told_to(product, study)))
+        instead = {name: value for name, value in told.items() if name in asked}
+        write_product(product, job_of(files, asked | instead, remarks), outputs)
 
 
 def _below(root: Path, paths: str | list[str]) -> str | list[str]:

@@ -5,7 +5,7 @@ test, what of the published numbers is reached, and where it wears most. One pac
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 import pandas as pd
@@ -25,7 +25,7 @@ from bulkwear.workflows.cases.circular_tester.key_numbers import PUBLISHED_FITS,
 from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW
 from bulkwear.workflows.cases.circular_tester.sensitivity_figures import SETTINGS_SAID
 from bulkwear.workflows.cases.circular_tester.tables import BEYOND, LABORATORY, OURS
-from bulkwear.workflows.cases.circular_tester.volume import CONVEX, TERMS, of_surface
+from bulkwear.workflows.cases.circular_tester.volume import TERMS, of_surface, times_source
 from bulkwear.workflows.report.sentences import PERCENT, less_or_more, measured, with_interval
 from bulkwear.workflows.report.text import number
 
@@ -35,8 +35,11 @@ PLACES = ("tester_columns", "tester_bumps", "tester_force")  # figures: where it
 WORN_OUT, SENSITIVITY = "tester_worn_out", "tester_sensitivity"  # figures that not every study has
 
 
-def all_answers(folder: Path, figures: Collection[str]) -> list[str]:
-    """Return the answers of a study with a pair, from its tables; folder: results/<study>; figures: that it has."""
+def all_answers(folder: Path, figures: Collection[str], foreign: Mapping[str, str]) -> list[str]:
+    """Return the answers of a study with a pair, from its tables; folder: results/<study>; figures: that it has.
+
+    foreign: {surface: why it is not the source's}, whose numbers no published ones stand beside
+    """
     published = pd.read_csv(PUBLISHED)
     rates, scale = of_study(folder, "rates"), of_study(folder, "time_scale").iloc[0]
     name = patterned_name(rates["surface"])
@@ -46,8 +49,8 @@ def all_answers(folder: Path, figures: Collection[str]) -> list[str]:
         *ratios(of_study(folder, "mean_ratios"), name),
         hours(scale),
         *beside_experiment(of_study(folder, "comparison"), name),
-        *plain_rates(rates, pd.read_csv(PUBLISHED_FITS), published, scale["simulated_coefficient"]),
-        *forces(force, published, name),
+        *plain_rates(rates, pd.read_csv(PUBLISHED_FITS), published, scale["simulated_coefficient"], foreign),
+        *forces(force, published, name, foreign),
         *places(columns, bumps, name),
         *(gone(pd.read_csv(worn_out), scale["hours_per_revolution"]) if WORN_OUT in figures else []),
         claims(of_study(folder, "findings")),
@@ -101,40 +104,46 @@ def beside_experiment(compared: pd.DataFrame, name: str) -> list[str]:
     return said
 
 
-def plain_rates(rates: pd.DataFrame, fits: pd.DataFrame, published: pd.DataFrame, coefficient: float) -> list[str]:
+def plain_rates(
+    rates: pd.DataFrame,
+    fits: pd.DataFrame,
+    published: pd.DataFrame,
+    coefficient: float,
+    foreign: Collection[str] = (),
+) -> list[str]:
     """Return what a revolution takes off the plain sample over what the source has at the same wear coefficient (1/Pa).
 
-    rates: as from `volume.rates`; fits, published: as in config/published
+    rates: as from `volume.rates`; fits, published: as in config/published; foreign: surfaces that are not the source's
     """
     linear = fits.loc[fits["surface"] == PLAIN, TERMS[0]]
-    factor = coefficient / published_value(published, "wear_coefficient", "simulation")
+    factor = times_source(coefficient, published)
     theirs = (factor * linear.min(), factor * linear.max())
     said = []
     for _, row in of_surface(rates, PLAIN).iterrows():
         rate = with_interval(row[RATE], row[f"{RATE}_low"], row[f"{RATE}_high"], row["packings"], "mm³")
-        said.append(
-            f"A revolution takes {rate} off the plain sample at particle scale {row['particle_scale']:g},"
-            f" {beside(row[RATE], *theirs, 'mm³')} at this wear coefficient."
-        )
+        known = "" if PLAIN in foreign else f", {beside(row[RATE], *theirs, 'mm³')} at this wear coefficient"
+        scale = f"{row['particle_scale']:g}"
+        said.append(f"A revolution takes {rate} off the plain sample at particle scale {scale}{known}.")
     return said
 
 
-def forces(force: pd.DataFrame, published: pd.DataFrame, name: str) -> list[str]:
+def forces(force: pd.DataFrame, published: pd.DataFrame, name: str, foreign: Collection[str] = ()) -> list[str]:
     """Return the normal force on both samples beside the published ones: of the plain sample over all revolutions, of
     the patterned one in the first, as the source's falls from there on.
 
-    force: surface, revolution, mean (N)
+    force: surface, revolution, mean (N); foreign: surfaces that are not the source's, told alone
     """
     plain, patterned = (of_surface(force, surface) for surface in (PLAIN, name))
     said = []
     if len(plain):
         ends = (published_value(published, f"plain_{end}_normal_force", "simulation") for end in ("least", "largest"))
         mean = plain["mean"].mean()
-        said.append(f"The bed presses on the plain sample with {measured(mean, 'N')}, {beside(mean, *ends, 'N')}.")
+        known = "" if PLAIN in foreign else f", {beside(mean, *ends, 'N')}"
+        said.append(f"The bed presses on the plain sample with {measured(mean, 'N')}{known}.")
     if len(patterned):
         first = patterned.loc[patterned["revolution"].idxmin(), "mean"]
         theirs = published_value(published, "convex_first_normal_force", "simulation")
-        known = f", {beside(first, theirs, theirs, 'N')}" if name == CONVEX else ""
+        known = "" if name in foreign else f", {beside(first, theirs, theirs, 'N')}"
         said.append(f"In the first revolution it presses on the {name} one with {measured(first, 'N')}{known}.")
     return said
 

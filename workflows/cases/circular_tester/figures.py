@@ -21,6 +21,7 @@ from bulkwear.workflows.cases.circular_tester.runs import (
     values_of_pairs,
     values_of_runs,
 )
+from bulkwear.workflows.cases.circular_tester.source import unlike_source
 from bulkwear.workflows.report.products import Job, every_run, figure, tables
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ PUBLISHED = {"published": "config/published/circular_tester.csv"}
 PUBLISHED_FITS = {"published_fits": "config/published/circular_tester_volume.csv"}
 CLAIMS = {"claims": "config/published/verdicts.yaml"}
 WEAR = {"wear": every_run("wear.csv")}  # with the surfaces of the cycles beside it
+FOREIGN = {"foreign": unlike_source}  # surfaces beside which no published number stands
 ALL_RUNS, PAIRS = {"runs": values_of_runs}, {"runs": values_of_pairs}
 DIGITS = 9
 OF_PAIRS = {"when": has_pairs, "digits": DIGITS}
@@ -61,7 +63,7 @@ def runs_of(job: Job) -> list[TesterRun]:
 
 @tables(
     inputs={**PUBLISHED, **PUBLISHED_FITS, **CLAIMS, **WEAR},
-    told=ALL_RUNS,
+    told={**ALL_RUNS, **FOREIGN},
     tables=TABLES,
     **OF_PAIRS,
 )
@@ -71,7 +73,7 @@ def tester_runs(job: Job) -> dict[str, pd.DataFrame]:
     from bulkwear.workflows.config.claims import claims_of
 
     claims = claims_of("circular_tester", job.files.claims)
-    return tables_of_runs(runs_of(job), *read(job, "published", "published_fits"), claims)
+    return tables_of_runs(runs_of(job), *read(job, "published", "published_fits"), claims, job.told.foreign)
 
 
 # ---------------------------------------------------------------- volumes
@@ -108,21 +110,24 @@ def tester_hours(job: Job) -> Any:
     "Volume by revolution",
     finding=figure_findings.lost,
     charts=(charts.VOLUME,),
-    inputs={**of_study("lost_volumes"), **PUBLISHED_FITS},
+    inputs={**of_study("lost_volumes"), **PUBLISHED, **PUBLISHED_FITS},
+    told=FOREIGN,
     **OF_PAIRS,
     caption="""
     Counterpart of Fig 6.11 and Eq 6.2 to 6.6 (Yan 2022). Marks: removed from the sample, mean over packings with its
-    95 % interval. Dashed: the thesis' fits, grey where we have no run of that particle scale.
+    95 % interval. Dashed: the thesis' fits at this wear coefficient, grey where we have no run of that particle scale.
     """,
 )
 def tester_volume(job: Job) -> Any:
     """Draw volumes by revolution (Fig 6.11)."""
+    from bulkwear.workflows.cases.circular_tester import volume
     from bulkwear.workflows.cases.circular_tester.plots.volume import volume_by_revolution
-    from bulkwear.workflows.cases.circular_tester.volume import beside_fits, chosen, mean_volumes, whole_revolutions
 
-    lost, published = read(job, "lost_volumes", "published_fits")
-    means = mean_volumes(whole_revolutions(chosen(lost, VOLUME, SIZE)))
-    return volume_by_revolution(means, published, job.remarks), beside_fits(means, published)
+    lost, published, published_fits = read(job, "lost_volumes", "published", "published_fits")
+    times = volume.times_source(volume.chosen(lost, VOLUME)["coefficient"].iloc[0], published)
+    fits = volume.fits_beside(published_fits, job.told.foreign, times)
+    means = volume.mean_volumes(volume.whole_revolutions(volume.chosen(lost, VOLUME, SIZE)))
+    return volume_by_revolution(means, fits, job.remarks), volume.beside_fits(means, fits)
 
 
 @figure(

@@ -10,10 +10,10 @@ from collections.abc import Mapping
 
 import pandas as pd
 
+from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.statistics.verdicts import Claim, Verdict, judged, not_said
 from bulkwear.workflows.cases.circular_tester.flow_evidence import ON_FLOW
 from bulkwear.workflows.cases.circular_tester.observed import Builder, Evidence, Observed
-from bulkwear.workflows.cases.circular_tester.volume import CONVEX
 from bulkwear.workflows.cases.circular_tester.volume_evidence import ON_VOLUMES
 
 BUILDERS: Mapping[str, Builder] = {**ON_VOLUMES, **ON_FLOW}
@@ -31,11 +31,11 @@ def findings_table(seen: Observed, claims: Mapping[str, Claim]) -> pd.DataFrame:
 
 
 def verdict_on(key: str, seen: Observed, claim: Claim) -> Verdict:
-    """Return the verdict on a claim; of the source's convex sample nothing can be said by another pattern."""
+    """Return the verdict on a claim; of the source's samples nothing can be said by others."""
     evidence = BUILDERS[key](seen, claim)
     words = found_words(evidence, claim.unit)
-    if seen.patterned != CONVEX and key not in OF_ANY_PATTERN:
-        return not_said(f"found of a {seen.patterned} sample, the source's is {CONVEX}", words)
+    if why := seen.foreign.get(PLAIN if key in OF_ANY_PATTERN else seen.patterned):
+        return not_said(why, words)
     if evidence.reason:
         return not_said(evidence.reason, words)
     return judged(claim, evidence.found, words, evidence.covers)

@@ -79,13 +79,16 @@ def _outer_bumps(seen: Observed, claim: Claim) -> Evidence:
 
 
 def _bump_volumes(odd: bool) -> Builder:
-    """Return what finds the least and the largest volume that a bump of the odd or of the even columns has lost."""
+    """Return what finds the least and the largest volume that a bump of the odd or of the even columns has lost, at the
+    source's wear coefficient.
+    """
 
     def found(seen: Observed, claim: Claim) -> Evidence:
         of_packing = seen.bumps[seen.bumps["row"] % 2 == int(odd)].groupby(PACKING)["volume_mm3"]
         ends = {"least": of_packing.min(), "largest": of_packing.max()}
         reach = reached(of_surface(seen.of_main(seen.increments), PATTERNED))
-        return Evidence({name: estimate(each, log=True) for name, each in ends.items()}, reach)
+        estimates = {name: estimate(each / seen.times_source, log=True) for name, each in ends.items()}
+        return Evidence(estimates, reach, "" if seen.times_source == 1.0 else "told at the source's wear coefficient")
 
     return found
 

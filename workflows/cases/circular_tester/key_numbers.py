@@ -23,7 +23,9 @@ from bulkwear.workflows.cases.circular_tester.volume import (
     SETTING,
     TERMS,
     change_of_terms,
+    fits_beside,
     published_terms,
+    times_source,
     volume_of_terms,
 )
 from bulkwear.workflows.config.claims import date_of_rules
@@ -159,8 +161,9 @@ def _per_weighing(measured: pd.DataFrame) -> pd.DataFrame:
 
 
 def _of_the_model(compared: pd.DataFrame) -> pd.DataFrame:
-    """Return the reduction that the source prints of its model, beside ours."""
+    """Return the reduction that the source prints of its model, beside ours; nothing of samples that are not its."""
     short = compared[(compared["quantity"] == "reduction") & (compared["hours"] == compared["hours"].min())]
+    short = short[short[THESIS].notna()]
     value = published_value(pd.read_csv(PUBLISHED), "reduction_56_h", "simulation")
     told = {"setting": "model after 56 h, particle scale 1", "published_value": value, "note": UNLIKE_ITS_EQUATIONS}
     return short.assign(**told, source=MODEL, **{GIVEN: ""})
@@ -235,12 +238,16 @@ def findings(study: Mapping[str, Any], folder: Path) -> list[Block]:
 def rates(study: Mapping[str, Any], folder: Path) -> list[Block]:
     """Return what each setting loses per revolution and how that changes, beside the fits of the source."""
     theirs = pd.read_csv(PUBLISHED_FITS)[["surface", "particle_scale", *TERMS, "r_squared", "source"]]
+    coefficient = of_study(folder, "time_scale")["simulated_coefficient"].iloc[0]
+    times = times_source(coefficient, pd.read_csv(PUBLISHED))
+    fits = fits_beside(theirs, study["told"]["foreign"], times)
+    scaled = "" if times == 1.0 else f", times {times:.3g} for the wear coefficient"
     note = (
         "Change: from the first to the last revolution, by a straight line through the increments; the source's is that"
-        f" of its fit over as many revolutions. {INTERVALS}"
+        f" of its fit over as many revolutions{scaled}. {INTERVALS}"
     )
     return [
-        Table(with_fits(of_study(folder, "rates"), theirs), "rates", note, heads=heads_of(RATE) | FIT_RATE),
+        Table(with_fits(of_study(folder, "rates"), fits), "rates", note, heads=heads_of(RATE) | FIT_RATE),
         Table(theirs, digits=dict.fromkeys([*TERMS, "r_squared"], FIT_DIGITS), heads=FIT_HEADS),
         *predicted_rates(of_study(folder, "rates"), error_of(study["settings"])),
     ]
@@ -267,7 +274,10 @@ def _joined(row: Any, error: float) -> Prediction:
 
 
 def with_fits(rates: pd.DataFrame, fits: pd.DataFrame) -> pd.DataFrame:
-    """Return the rates with what the source's fits lose per revolution, and how that changes, over as many of them."""
+    """Return the rates with what the source's fits lose per revolution, and how that changes, over as many of them.
+
+    fits: as from `volume.fits_beside`
+    """
     terms = [published_terms(fits, row.surface, row.particle_scale) for row in rates.itertuples()]
     over = rates["revolutions"].tolist()
     return rates.assign(

@@ -35,6 +35,8 @@ class Observed:
     shape, scale: of the machine and the particles of series volume
     meshes: as from `distribution.volumes_of_meshes`, None without a series of meshes
     worn_out: as from `comparison.worn_out_at`, None without a pattern that is worn right off
+    foreign: {surface: why it is not the source's}, as from `source.unlike_source`
+    times_source: wear coefficient over the source's, as from `volume.times_source`
     """
 
     lost: pd.DataFrame
@@ -49,6 +51,8 @@ class Observed:
     scale: float
     meshes: pd.DataFrame | None = None
     worn_out: pd.DataFrame | None = None
+    foreign: Mapping[str, str] = field(default_factory=dict)
+    times_source: float = 1.0
 
     @property
     def patterned(self) -> str:

@@ -11,6 +11,7 @@ from bulkwear.workflows.cases.circular_tester import key_numbers
 from bulkwear.workflows.cases.circular_tester.beds import NOTE
 from bulkwear.workflows.cases.circular_tester.runs import has_pairs
 from bulkwear.workflows.cases.circular_tester.sensitivity_figures import EFFECTS, NUMBERS, SENSITIVITY, SETTINGS_SAID
+from bulkwear.workflows.cases.circular_tester.source import unlike_source
 from bulkwear.workflows.report.beds import blocks_of_beds
 from bulkwear.workflows.report.sections import Block, Pictures, Points, Section, Table, Text
 from bulkwear.workflows.report.sentences import friction_between
@@ -44,15 +45,18 @@ DECKS = (  # {bed} and {run} are those of the first run
 
 
 def told(study: Study) -> dict[str, Any]:
-    """Return what the page is told besides what every page is: whether there is anything to compare."""
-    return {"paired": has_pairs(study)}
+    """Return what the page is told besides what every page is: whether there is anything to compare, and which samples
+    are not the source's.
+    """
+    return {"paired": has_pairs(study), "foreign": unlike_source(study)}
 
 
 def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
     """Return in sentences what a study that is done answers, whatever tables an earlier choice of rows has left."""
     from bulkwear.workflows.cases.circular_tester.answers import all_answers  # every job reads this page
 
-    return all_answers(folder, study["figures"]) if study["told"]["paired"] else [UNPAIRED]
+    told = study["told"]
+    return all_answers(folder, study["figures"], told["foreign"]) if told["paired"] else [UNPAIRED]
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
@@ -113,7 +117,7 @@ def what_is_open(folder: Path) -> list[Block]:
 
 
 def remarks(study: Study) -> list[str]:
-    """Return what figures must say about particles, machine, elements, coefficient."""
+    """Return what figures must say about particles, machine, elements, coefficient, samples not the source's."""
     runs = study.runs
     scales = sorted({run.parameters["particle"]["scale"] for run in runs})
     said = [f"particles at scale {range_text(scales)}"]
@@ -126,7 +130,7 @@ def remarks(study: Study) -> list[str]:
     wear = runs[0].parameters["wear"] | study.settings["wear"]
     coefficient = wear["wear_coefficient_per_pa"] * wear["acceleration"]
     said.append(f"wear coefficient {coefficient:g} 1/Pa, far above the material's: a revolution stands for many hours")
-    return said
+    return [*said, *dict.fromkeys(unlike_source(study).values())]
 
 
 def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:

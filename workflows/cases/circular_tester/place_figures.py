@@ -8,6 +8,7 @@ from bulkwear.workflows.cases.circular_tester import figure_findings
 from bulkwear.workflows.cases.circular_tester.figures import (
     ALL_RUNS,
     DIGITS,
+    FOREIGN,
     OF_PAIRS,
     PAIRS,
     PUBLISHED,
@@ -28,7 +29,7 @@ from bulkwear.workflows.cases.circular_tester.runs import (
 )
 from bulkwear.workflows.report.products import Job, figure
 
-OF_PLACES = {"inputs": {**WEAR, **PUBLISHED}, "told": PAIRS, **OF_PAIRS}
+OF_PLACES = {"inputs": {**WEAR, **PUBLISHED}, "told": {**PAIRS, **FOREIGN}, **OF_PAIRS}
 
 
 @figure(
@@ -53,7 +54,8 @@ def tester_columns(job: Job) -> Any:
     each = distribution.of_runs(distribution.wear_by_column(worn, distribution.borders_of(runs[0])), runs)
     table, share = distribution.columns_over_packings(each, "mm3"), distribution.share_of_bumps(each)
     theirs = published_value(*read(job, "published"), "share_of_bumps", "simulation")
-    said = f"pattern {share.text(factor=100.0, unit='%')}; Yan 2022: {theirs:g} %"
+    own = f"pattern {share.text(factor=100.0, unit='%')}"
+    said = own if runs[0].surface in job.told.foreign else f"{own}; Yan 2022: {theirs:g} %"
     remarks = [f"after {shared:g} revolutions", *job.remarks]
     return by_column(table, "mm3", "Worn volume (mm³)", said, remarks), table
 
@@ -75,14 +77,16 @@ def tester_bumps(job: Job) -> Any:
     from bulkwear.workflows.cases.circular_tester.distribution import surfaces_alike, wear_by_bump
     from bulkwear.workflows.cases.circular_tester.packings import over_packings
     from bulkwear.workflows.cases.circular_tester.plots.distribution import by_bump
+    from bulkwear.workflows.cases.circular_tester.volume import times_source
 
     patterned = {run.name: run for run, _ in pairs_of(runs_of(job))}
     last, worn = surfaces_alike(list(patterned.values()))
     bumps = wear_by_bump({run.packing: worn[name] for name, run in patterned.items()})
     bumps = over_packings(bumps, ["bump", "row"], "volume_mm3")
-    (published,) = read(job, "published")
-    theirs = published_value(published, "last_revolution", "simulation")
-    return by_bump(bumps, published, (last, theirs), job.remarks), bumps
+    (published,), shown = read(job, "published"), next(iter(patterned.values()))
+    theirs = published_value(published, "last_revolution", "simulation") / times_source(shown.coefficient, published)
+    beside = None if shown.surface in job.told.foreign else published
+    return by_bump(bumps, beside, (last, theirs), job.remarks), bumps
 
 
 @figure(
@@ -136,7 +140,8 @@ def tester_force_columns(job: Job) -> Any:
     first = of_surface(each[each["column"] == 1], PATTERNED)
     share = estimate(first["bumps_N"] / (first["bumps_N"] + first["base_N"]))
     theirs = published_value(*read(job, "published"), "first_column_force_share", "simulation")
-    said = f"pattern in column 1 {share.text(factor=100.0, unit='%')}; Yan 2022: over {theirs:g} %"
+    own = f"pattern in column 1 {share.text(factor=100.0, unit='%')}"
+    said = own if runs[0].surface in job.told.foreign else f"{own}; Yan 2022: over {theirs:g} %"
     table = distribution.columns_over_packings(each, "N")
     return by_column(table, "N", "Normal force (N)", said, job.remarks), table
 

@@ -71,20 +71,22 @@ def pairs_by_setting(runs: Sequence[TesterRun]) -> dict[str, list[tuple[TesterRu
     return found
 
 
-def numbers_of_pair(patterned: TesterRun, plain: TesterRun, convex_volume_184_h: float) -> dict[str, float]:
+def numbers_of_pair(
+    patterned: TesterRun, plain: TesterRun, convex_volume_184_h: float, times_source: float
+) -> dict[str, float]:
     """Return {key of a claim: value in its unit} of a packing of a setting.
 
     convex_volume_184_h: mm3 that the laboratory's convex sample lost; ours is measured when it has lost less, so losses
-    of bumps are told in proportion
+    of bumps are told in proportion; times_source: wear coefficient over the source's, at which volumes are told
     """
     return {
-        **_of_volumes(patterned, plain),
+        **_of_volumes(patterned, plain, times_source),
         **_of_flow(patterned, plain),
         **_of_places(patterned, plain, convex_volume_184_h),
     }
 
 
-def _of_volumes(patterned: TesterRun, plain: TesterRun) -> dict[str, float]:
+def _of_volumes(patterned: TesterRun, plain: TesterRun, times_source: float) -> dict[str, float]:
     """Volumes (mm3) per revolution, their ratio, and how far contacts slide over how far the trough goes."""
     import pandas as pd
 
@@ -97,8 +99,8 @@ def _of_volumes(patterned: TesterRun, plain: TesterRun) -> dict[str, float]:
     of = {run.name: float(volumes_at(lost[lost["run"] == run.name], last).iloc[0]) for run in (patterned, plain)}
     summary = run_summary(pd.read_csv(plain.folder / "wear.csv"))
     return {
-        "plain_volume": of[plain.name] / last,
-        "convex_volume": of[patterned.name] / last,
+        "plain_volume": of[plain.name] / last / times_source,
+        "convex_volume": of[patterned.name] / last / times_source,
         "loss_ratio": of[patterned.name] / of[plain.name],
         "plain_slip": float(sliding_over_travel(summary)),
     }

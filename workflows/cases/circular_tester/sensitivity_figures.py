@@ -11,6 +11,7 @@ from bulkwear.workflows.cases.circular_tester.figures import (
     ALL_RUNS,
     CLAIMS,
     DIGITS,
+    FOREIGN,
     OF_PAIRS,
     PAIRS,
     PUBLISHED,
@@ -18,12 +19,17 @@ from bulkwear.workflows.cases.circular_tester.figures import (
     read,
     runs_of,
 )
-from bulkwear.workflows.cases.circular_tester.runs import VARIED, has_series, pairs_of
+from bulkwear.workflows.cases.circular_tester.runs import VARIED, TesterRun, has_series, pairs_of
 from bulkwear.workflows.cases.circular_tester.sensitivity import changes_of, settings_of_pairs
+from bulkwear.workflows.cases.circular_tester.source import unlike_source
 from bulkwear.workflows.report.products import Job, figure, tables
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import pandas as pd
+
+    from bulkwear.workflows.config.design import Study
 
 CLAIMS_PART = "tester_sensitivity"
 SENSITIVITY, EFFECTS = "tester/sensitivity.csv", "tester/sensitivity_effects.csv"
@@ -32,21 +38,34 @@ NUMBERS = "tester/published_numbers.csv"
 TOLD_AS_FINDINGS = ("loss_ratio", "plain_columns", "first_column", "bump_share")  # numbers that findings judge already
 
 
-@tables(inputs={**PUBLISHED, **CLAIMS, **WEAR}, told=PAIRS, tables={"numbers": NUMBERS}, **OF_PAIRS)
+def varies_source(study: Study) -> bool:
+    """Return whether a study varies what the source does not tell of its samples."""
+    return has_series(VARIED)(study) and not unlike_source(study)
+
+
+def _numbers(job: Job, pairs: Sequence[tuple[TesterRun, TesterRun]]) -> list[dict[str, float]]:
+    """Return the numbers of each packing of a setting, see `sensitivity.numbers_of_pair`."""
+    from bulkwear.postproc.tables.summary import published_value
+    from bulkwear.workflows.cases.circular_tester.sensitivity import numbers_of_pair
+    from bulkwear.workflows.cases.circular_tester.volume import times_source
+
+    (published,) = read(job, "published")
+    lost = published_value(published, "convex_volume_184_h", "laboratory")
+    return [numbers_of_pair(*pair, lost, times_source(pair[1].coefficient, published)) for pair in pairs]
+
+
+@tables(inputs={**PUBLISHED, **CLAIMS, **WEAR}, told={**PAIRS, **FOREIGN}, tables={"numbers": NUMBERS}, **OF_PAIRS)
 def tester_numbers(job: Job) -> dict[str, pd.DataFrame]:
     """Make the table of published forces, volumes, spins, velocities and losses beside those of the main pair; without
     rows where its pattern is not the source's.
     """
-    from bulkwear.postproc.tables.summary import published_value
     from bulkwear.workflows.cases.circular_tester import sensitivity
-    from bulkwear.workflows.cases.circular_tester.volume import CONVEX
     from bulkwear.workflows.config.claims import claims_of
 
-    lost = published_value(*read(job, "published"), "convex_volume_184_h", "laboratory")
     claims = claims_of(CLAIMS_PART, job.files.claims)
     claims = {key: claim for key, claim in claims.items() if key not in TOLD_AS_FINDINGS}
-    pairs = [pair for pair in pairs_of(runs_of(job)) if pair[0].surface == CONVEX]
-    numbers = [sensitivity.numbers_of_pair(patterned, plain, lost) for patterned, plain in pairs]
+    pairs = [pair for pair in pairs_of(runs_of(job)) if pair[0].surface not in job.told.foreign]
+    numbers = _numbers(job, pairs)
     return {"numbers": sensitivity.numbers_table(numbers, claims)}
 
 
@@ -57,7 +76,7 @@ def tester_numbers(job: Job) -> dict[str, pd.DataFrame]:
     inputs={**PUBLISHED, **CLAIMS, **WEAR},
     told={**ALL_RUNS, "settings": settings_of_pairs},
     tables={"sensitivity": SENSITIVITY, "effects": EFFECTS, "said": SETTINGS_SAID},
-    when=has_series(VARIED),
+    when=varies_source,
     digits=DIGITS,
     caption="""
     A line per published number of chapter 6 (Yan 2022), with the values that agree with it, margins included; a column
@@ -68,16 +87,11 @@ def tester_numbers(job: Job) -> dict[str, pd.DataFrame]:
 )
 def tester_sensitivity(job: Job) -> Any:
     """Draw which published numbers each setting reaches."""
-    from bulkwear.postproc.tables.summary import published_value
     from bulkwear.workflows.cases.circular_tester import sensitivity
     from bulkwear.workflows.cases.circular_tester.plots.sensitivity import reached_by_setting
     from bulkwear.workflows.config.claims import claims_of
 
-    lost = published_value(*read(job, "published"), "convex_volume_184_h", "laboratory")
-    numbers = {
-        pair: [sensitivity.numbers_of_pair(patterned, plain, lost) for patterned, plain in packings]
-        for pair, packings in sensitivity.pairs_by_setting(runs_of(job)).items()
-    }
+    numbers = {pair: _numbers(job, packings) for pair, packings in sensitivity.pairs_by_setting(runs_of(job)).items()}
     table = sensitivity.sensitivity_table(numbers, claims_of(CLAIMS_PART, job.files.claims))
     changes = changes_of(job.told.settings)
     effects = sensitivity.effects_table(table, changes)

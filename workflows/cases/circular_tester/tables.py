@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -18,7 +19,6 @@ from bulkwear.workflows.cases.circular_tester.observed import Observed
 from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW, PACKING, over_packings
 from bulkwear.workflows.cases.circular_tester.runs import RING, SIZE, SURFACE, VOLUME, TesterRun, pairs_of
 from bulkwear.workflows.cases.circular_tester.volume import (
-    CONVEX,
     chosen,
     of_surface,
     published_terms,
@@ -36,17 +36,24 @@ BEYOND = "ours extrapolated"
 
 
 def tables_of_runs(
-    runs: Sequence[TesterRun], published: pd.DataFrame, published_fits: pd.DataFrame, claims: Mapping[str, Claim]
+    runs: Sequence[TesterRun],
+    published: pd.DataFrame,
+    published_fits: pd.DataFrame,
+    claims: Mapping[str, Claim],
+    foreign: Mapping[str, str],
 ) -> dict[str, pd.DataFrame]:
-    """Return volumes, rates, time scale, predictions, comparison, ratios, series and findings of a study."""
+    """Return volumes, rates, time scale, predictions, comparison, ratios, series and findings of a study.
+
+    foreign: as from `source.unlike_source`
+    """
     lost, (patterned, plain) = volume.volumes(runs), pairs_of(runs)[0]
     of_sizes = chosen(lost, VOLUME, SIZE)
     scale = hours.time_scale(of_surface(chosen(lost, VOLUME), PLAIN), plain, published)
     told = [published_value(published, name, "laboratory") for name in TOLD_HOURS]
     predicted = hours.predictions(of_sizes, scale, told)
     main = predicted[(predicted["shape"] == plain.shape) & (predicted["particle_scale"] == plain.particle_scale)]
-    compared = [comparison_table(main, published, published_fits, plain.particle_scale)]
-    if patterned.surface == CONVEX:
+    compared = [comparison_table(main, published, published_fits, plain.particle_scale, foreign)]
+    if patterned.surface not in foreign:
         compared.append(_measured_losses(runs, published, scale.revolutions(told[-1])))
     tables = {
         "lost_volumes": lost,
@@ -58,36 +65,48 @@ def tables_of_runs(
         "series": pd.concat([flow.series_of(run) for run in runs if run.series == VOLUME], ignore_index=True),
     }
     tables["mean_ratios"] = comparison.mean_ratios(tables["ratios"], shared=False)
-    seen = observed(runs, tables, scale.hours_per_revolution)
+    seen = replace(
+        observed(runs, tables, scale.hours_per_revolution),
+        foreign=foreign,
+        times_source=volume.times_source(plain.coefficient, published),
+    )
     return tables | {"findings": findings_table(seen, claims)}
 
 
 def comparison_table(
-    predicted: pd.DataFrame, published: pd.DataFrame, published_fits: pd.DataFrame, particle_scale: float
+    predicted: pd.DataFrame,
+    published: pd.DataFrame,
+    published_fits: pd.DataFrame,
+    particle_scale: float,
+    foreign: Collection[str] = (),
 ) -> pd.DataFrame:
     """Experiment, the thesis' model and ours side by side, one row per hours and quantity.
 
     predicted: as from `hours.predictions`; published, published_fits: config/published/circular_tester.csv and
     circular_tester_volume.csv; particle_scale: -, of our runs. The thesis' volumes come from its own fits at its own
     two revolutions for 56 h: of particle scale 1, which it holds against its experiment, and, where published, of ours.
+    foreign: surfaces that are not the source's, of which it has no volumes; that which sets the scale of time stays.
     Columns: hours, quantity, unit, <the four>, packings, interval_low and interval_high (of ours: the prediction
     interval, in which one further packing falls), note.
     """
     per_hour = published_value(published, "revolutions_of_short_test", "simulation") / published_value(
         published, SHORT, "laboratory"
     )
-    patterned = patterned_name(predicted["surface"])
+    patterned, own_fits = patterned_name(predicted["surface"]), volume.fits_beside(published_fits, foreign)
+    short_test = published_value(published, SHORT, "laboratory")
     rows = []
     for test_hours, of_hours in predicted.groupby("hours"):
         volumes, ours = {}, {surface: of_surface(of_hours, surface).iloc[0] for surface in (PLAIN, patterned)}
         for surface in (PLAIN, patterned):
             theirs = [
-                float(volume_of_terms(published_terms(published_fits, surface, each), per_hour * test_hours))
+                float(volume_of_terms(published_terms(own_fits, surface, each), per_hour * test_hours))
                 for each in (THESIS_SCALE, particle_scale)
             ]
             measured = published[
                 (published["quantity"] == f"{surface}_volume_{test_hours:g}_h") & (published["of"] == "laboratory")
             ]["value"]
+            if surface in foreign and not (surface == PLAIN and test_hours == short_test):
+                measured = measured.iloc[:0]
             volumes[surface] = [
                 measured.iloc[0] if len(measured) else np.nan,
                 *theirs,
@@ -101,6 +120,7 @@ def comparison_table(
     table = pd.DataFrame(rows, columns=COMPARED)
     short, long = (table["hours"] == published_value(published, name, "laboratory") for name in (SHORT, LONG))
     printed = published_value(published, "reduction_56_h", "simulation")
+    short, long = short & table[THESIS].notna(), long & table[THESIS].notna()
     _note(table, short & (table["unit"] == "%"), f"the thesis' text has {printed:g} % for its model")
     _note(table, long & (table["unit"] == "mm3"), "the thesis' text swaps experiment and model here")
     return table

@@ -7,7 +7,7 @@ Volumes add up, so what is said of straight and curved growth is said of the inc
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 import pandas as pd
@@ -15,11 +15,11 @@ import pandas as pd
 from bulkwear.postproc.mesh import PLAIN, read_surface, worn_faces
 from bulkwear.postproc.statistics.increments import FARTHEST, blocks_of, prediction, rate_trend
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
+from bulkwear.postproc.tables.summary import published_value
 from bulkwear.postproc.wear.pattern_left import pattern_volume
 from bulkwear.workflows.cases.circular_tester.packings import PACKING, interval_columns, over_packings
 from bulkwear.workflows.cases.circular_tester.runs import SURFACE, TesterRun
 
-CONVEX = "convex"  # the source's pattern
 PATTERNED = "patterned"  # stands for any surface that is not plain
 SETTING = ["surface", "shape", "particle_scale"]  # columns that tell runs apart which are no packings of each other
 TERMS = ["linear_mm3_per_revolution", "quadratic_mm3_per_revolution2"]  # of the source's fits
@@ -164,8 +164,25 @@ def mean_increments(lost: pd.DataFrame) -> pd.DataFrame:
     return over_packings(grown, keys, "increment_mm3").merge(of_elements, on=keys)
 
 
+def times_source(coefficient: float, published: pd.DataFrame) -> float:
+    """A wear coefficient (1/Pa) over that of the source's simulations; volumes are linear in it.
+
+    published: as config/published/circular_tester.csv
+    """
+    return coefficient / published_value(published, "wear_coefficient", "simulation")
+
+
+def fits_beside(published_fits: pd.DataFrame, foreign: Collection[str], times: float = 1.0) -> pd.DataFrame:
+    """Eq 6.2 to 6.6 as they may stand beside a study's samples: without those of surfaces that are not the source's.
+
+    foreign: these, as from `source.unlike_source`; times: as from `times_source`, by which the terms are multiplied
+    """
+    own = published_fits[~published_fits["surface"].isin(list(foreign))]
+    return own.assign(**{term: times * own[term] for term in TERMS})
+
+
 def published_terms(published: pd.DataFrame, surface: str, scale: float) -> np.ndarray:
-    """Terms (2,) of Eq 6.2 to 6.6, mm3; NaN for a case that is not published."""
+    """Terms (2,) of Eq 6.2 to 6.6, mm3; NaN for a case that is not in the table, as from `fits_beside`."""
     found = published[(published["surface"] == surface) & np.isclose(published["particle_scale"], scale)]
     return found[TERMS].to_numpy(float)[0] if len(found) else np.full(len(TERMS), np.nan)
 

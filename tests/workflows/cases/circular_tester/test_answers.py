@@ -93,7 +93,12 @@ def test_rates_and_forces_are_set_beside_the_source():
     assert plain.endswith("with 16 N, within the published 15 to 18 N.")
     assert convex.endswith("on the convex one with 14 N, 0.5 times the published 28 N.")
     assert answers.forces(force[force["surface"] == "plain"], PUBLISHED, "convex") == [plain]
-    assert "published" not in answers.forces(force.replace("convex", "disc"), PUBLISHED, "disc")[1]
+    assert "published" not in answers.forces(force.replace("convex", "disc"), PUBLISHED, "disc", {"disc"})[1]
+    foreign = {"plain", "convex"}
+    assert answers.plain_rates(rates, PUBLISHED_FITS, PUBLISHED, 5e-9, foreign) == [
+        f"A revolution takes 37 mm³ {ONE} off the plain sample at particle scale 6."
+    ]
+    assert not any("published" in words for words in answers.forces(force, PUBLISHED, "convex", foreign))
 
 
 def test_a_pattern_that_is_gone_is_told_in_hours():

@@ -249,13 +249,32 @@ def test_another_pattern_says_nothing_of_the_sources(theirs):
         return value.replace({"surface": {"convex": "dimpled"}}) if isinstance(value, pd.DataFrame) else value
 
     other = replace(theirs, **{field.name: renamed(getattr(theirs, field.name)) for field in fields(theirs)})
-    found, own = verdicts(other), verdicts(theirs)
+    why = "found of a dimpled sample, the source's is convex"
+    found, own = verdicts(replace(other, foreign={"dimpled": why})), verdicts(theirs)
     kept = list(OF_ANY_PATTERN)
     assert found.loc[kept, "verdict"].tolist() == own.loc[kept, "verdict"].tolist()
     of_pattern = found.drop(index=kept)
     assert set(of_pattern["verdict"]) == {UNSAID}
-    assert set(of_pattern["reason"]) == {"found of a dimpled sample, the source's is convex"}
+    assert set(of_pattern["reason"]) == {why}
     assert found.loc["bump_share", "found"] == own.loc["bump_share", "found"]
+
+
+def test_another_machine_says_nothing_of_the_sources(theirs):
+    """Then what is found of its plain sample judges no claim either, and is told."""
+    why = "found with tester.depth_mm 60, the source's is 90"
+    found, own = verdicts(replace(theirs, foreign=dict.fromkeys(("plain", "convex"), why))), verdicts(theirs)
+    assert set(found["verdict"]) == {UNSAID} and set(found["reason"]) == {why}
+    assert found["found"].tolist() == own["found"].tolist()
+
+
+def test_volumes_are_held_against_the_sources_at_its_coefficient(theirs):
+    """Twice the coefficient wears bumps twice as much: the same verdict, of volumes that are told of the source's."""
+    keys = ["odd_bumps", "even_bumps"]
+    worn = theirs.bumps.assign(volume_mm3=2.0 * theirs.bumps["volume_mm3"])
+    found, own = verdicts(replace(theirs, bumps=worn, times_source=2.0)), verdicts(theirs)
+    assert found.loc[keys, "verdict"].tolist() == own.loc[keys, "verdict"].tolist() == [AGREES] * len(keys)
+    assert (found.loc[keys, "found"] == own.loc[keys, "found"] + "; told at the source's wear coefficient").all()
+    assert (verdicts(replace(theirs, bumps=worn)).loc[keys, "verdict"] != AGREES).all()
 
 
 def test_means_of_the_flow_are_those_of_its_series():

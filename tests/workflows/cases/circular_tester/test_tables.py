@@ -9,7 +9,11 @@ import pytest
 
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.workflows.cases.circular_tester.hours import predictions, time_scale
-from bulkwear.workflows.cases.circular_tester.key_numbers import measured_beside_ours, predicted_rates
+from bulkwear.workflows.cases.circular_tester.key_numbers import (
+    measured_beside_ours,
+    predicted_rates,
+    with_fits,
+)
 from bulkwear.workflows.cases.circular_tester.tables import (
     BEYOND,
     LABORATORY,
@@ -19,17 +23,19 @@ from bulkwear.workflows.cases.circular_tester.tables import (
     comparison_table,
     loss_rows,
 )
+from bulkwear.workflows.cases.circular_tester.volume import fits_beside, times_source
 from tests.support import tester_study as study
 
 RUN = SimpleNamespace(coefficient=5e-9, width=0.1, length=0.1, distance_per_revolution=1.071)
 LAWS = {name: law for name, law in study.LAWS.items() if name[1] == 3}
 
 
-def compared(**changes):
+def compared(foreign=(), **changes):
     lost = study.volumes(LAWS, **changes)
     scale = time_scale(lost[lost["surface"] == "plain"], RUN, study.PUBLISHED)
     predicted = predictions(lost, scale, [56.0, 184.0])
-    return comparison_table(predicted, study.PUBLISHED, study.PUBLISHED_FITS, 3.0).set_index(["hours", "quantity"])
+    table = comparison_table(predicted, study.PUBLISHED, study.PUBLISHED_FITS, 3.0, foreign)
+    return table.set_index(["hours", "quantity"])
 
 
 def test_comparison_table():
@@ -86,6 +92,36 @@ def test_measured_volumes_are_published_numbers():
     assert model.unit == "%" and model.computed_value == pytest.approx(
         100.0 * (1.0 - early.computed_value / found["plain volume", "experiment after 56 h"].computed_value), rel=0.02
     )
+
+
+@pytest.mark.parametrize(("foreign", "kept"), [(["convex"], 3), (["plain", "convex"], 2)])
+def test_nothing_published_stands_beside_samples_that_are_not_the_sources(foreign, kept):
+    """Neither in the comparison nor among the published numbers; the plain volume that sets the scale of time stays,
+    as given.
+    """
+    table = compared(foreign, packings=2)
+    beside = [LABORATORY, THESIS, THESIS_ALIKE]
+    known = table[table[beside].notna().any(axis=1)]
+    assert set(known.index.get_level_values("quantity")) == {"plain volume"}
+    assert table.loc[(56.0, "plain volume"), LABORATORY] == 145.2 and table[OURS].notna().all()
+    assert not table["note"].str.contains("% for its model").any()
+    numbers = measured_beside_ours(table.reset_index())
+    assert set(numbers["quantity"]) == {"plain volume"} and len(numbers) == kept
+    assert (numbers["given"] == "yes").sum() == 2
+
+
+def test_fits_are_told_at_the_coefficient_and_of_the_sources_samples():
+    """At twice the coefficient a revolution takes twice as much, and as much more from one to the next; a rate of a
+    surface that is not the source's has none beside it.
+    """
+    rates = pd.DataFrame({"surface": ["plain", "convex"], "particle_scale": 3.0, "revolutions": 10.0})
+    twice = times_source(1e-8, study.PUBLISHED)
+    own, doubled = (with_fits(rates, fits_beside(study.PUBLISHED_FITS, (), times)) for times in (1.0, twice))
+    assert twice == 2.0 and own["fit_mm3_per_revolution"].tolist() == pytest.approx([77.03, 47.12 + 10 * 0.78])
+    assert doubled["fit_mm3_per_revolution"].tolist() == pytest.approx((2.0 * own["fit_mm3_per_revolution"]).tolist())
+    assert doubled["fit_change_percent"].tolist() == pytest.approx(own["fit_change_percent"].tolist())
+    foreign = with_fits(rates, fits_beside(study.PUBLISHED_FITS, {"convex": "why"}))
+    assert foreign["fit_mm3_per_revolution"].notna().tolist() == [True, False]
 
 
 def test_losses_stand_beside_the_scanned_ones():

@@ -54,35 +54,29 @@ def by_column(table: pd.DataFrame, unit: str, quantity: str, pattern_words: str,
 
 
 def by_bump(
-    table: pd.DataFrame, published: pd.DataFrame, revolutions: tuple[float, float], remarks: Sequence[str]
+    table: pd.DataFrame, published: pd.DataFrame | None, revolutions: tuple[float, float], remarks: Sequence[str]
 ) -> Figure:
     """Draw what every shape of a pattern loses per revolution (mm3), columns apart, on the published ranges (Fig 6.14).
 
-    table: bump, row, volume_mm3, and the interval over packings; revolutions: of ours and of the published volumes.
+    table: bump, row, volume_mm3, and the interval over packings; published: None without such ranges; revolutions: of
+    ours, and those of ours that the published volumes take.
     """
     ours, theirs = revolutions
     figure = new_figure(remarks)
     axes = figure.subplots()
     places = np.arange(len(table))
     for row, of_row in table.groupby("row"):
-        kind = "odd" if row % 2 else "even"
-        ends = [
-            published_value(published, f"{end}_bump_volume_{kind}", "simulation") / theirs
-            for end in ("least", "largest")
-        ]
         there = places[(table["row"] == row).to_numpy()]
-        axes.fill_between(
-            [there[0] - 0.5, there[-1] + 0.5],
-            *ends,
-            color=BAND_COLOUR,
-            zorder=0,
-            label="range of the column's bumps, Yan 2022",
-        )
+        if published is not None:
+            names = [f"{end}_bump_volume_{'odd' if row % 2 else 'even'}" for end in ("least", "largest")]
+            ends = [published_value(published, name, "simulation") / theirs for name in names]
+            words = "range of the column's bumps, Yan 2022"
+            axes.fill_between([there[0] - 0.5, there[-1] + 0.5], *ends, color=BAND_COLOUR, zorder=0, label=words)
         reach = errorbars(of_row, "volume_mm3") / ours
         bars = {"yerr": reach, "capsize": 2.0} if np.isfinite(reach).any() else {}
         axes.bar(there, of_row["volume_mm3"] / ours, color=PATTERN_COLOUR, **bars)
     axes.set_xticks(places, table["bump"], rotation=90)
-    said = f"means over {ours:.3g} revolutions, Yan 2022 over {theirs:g}"
+    said = f"means over {ours:.3g} revolutions" + (f", Yan 2022 over {theirs:.3g}" if published is not None else "")
     axes.set_title(said, loc="left", fontsize=SMALLEST_FONT)
     axes.set_ylabel("Worn volume of a shape\nper revolution (mm³)")
     figure.legend(*named_once([axes]), loc="outside upper center")

@@ -26,9 +26,9 @@ from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.summary import patterned_name, published_value
 from bulkwear.workflows.cases.circular_tester.comparison import WORN_OUT_SHARE
 from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW, errorbars
+from bulkwear.workflows.cases.circular_tester.source import CONVEX
 from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS
 from bulkwear.workflows.cases.circular_tester.volume import (
-    CONVEX,
     TERMS,
     of_surface,
     published_terms,
