@@ -133,8 +133,13 @@ def pattern_in_film(frames: pd.DataFrame) -> str:
 
 
 def share_of_pattern(split: pd.DataFrame) -> str:
-    """Return how much of the wear of patterned samples is on their pattern. split: a row per setting and surface."""
-    patterned = split[split["pattern_over_plain"] > 0.0]
+    """Return how much of the wear of patterned samples is on their pattern, "" where none has a plain twin that it is
+    told over. split: a row per setting and surface
+    """
+    known = split.dropna(subset="pattern_over_plain")
+    if known.empty:
+        return ""
+    patterned = known[known["pattern_over_plain"] > 0.0]
     if patterned.empty:
         return "No sample has a pattern that wears."
     shares = PERCENT * patterned["pattern_over_plain"] / patterned["wear_over_plain"]

@@ -627,6 +627,17 @@ def test_rows_with_seeds_are_replicates(config):
 
 
 BEST = "row,major_radius_mm,minor_radius_mm,column_spacing_mm,height_mm,velocity_m_per_s,bed_thickness_mm\n"
+
+
+@pytest.mark.parametrize("rows", [{}, {"rows": ["R9"]}])
+def test_factors_without_a_pattern_are_refused(config, rows):
+    """A regression is of patterned samples, whichever rows are chosen; the line and the surfaces are named."""
+    with_factors(config, "{t: bed_thickness_mm, v: velocity_m_per_s}")
+    config.edit("studies/small.yaml", "surfaces: [convex, plain]", "surfaces: [plain]")
+    with pytest.raises(ConfigError, match=r"small\.yaml, line 5: factors ask .*, found surfaces plain, allowed are"):
+        load_study("small", config.project, rows)
+
+
 FACTORS = "surfaces: [convex, plain]\nfactors: {a: major_radius_mm, t: bed_thickness_mm}"
 
 

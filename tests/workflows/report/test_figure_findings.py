@@ -43,10 +43,11 @@ def test_updates_at_a_cap_are_counted():
 
 
 def test_share_of_the_pattern():
-    """A quarter of the wear; of plain samples alone there is none."""
+    """A quarter of the wear; of plain samples alone there is none; without plain twins nothing is said."""
     split = pd.DataFrame({"wear_over_plain": [0.8, 1.0], "pattern_over_plain": [0.2, 0.0]})
     assert findings.share_of_pattern(split) == "Of the wear of patterned samples 25 % is on the pattern."
     assert findings.share_of_pattern(split.tail(1)) == "No sample has a pattern that wears."
+    assert findings.share_of_pattern(split.head(1) * float("nan")) == ""
 
 
 def test_forces_are_told_alike_along_the_travel_and_as_means():

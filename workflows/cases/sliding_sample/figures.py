@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.sliding_sample import charts
 from bulkwear.workflows.cases.sliding_sample.grain_shape import compares_shapes, shape_finding
-from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, plain_runs, published_rows
+from bulkwear.workflows.cases.sliding_sample.study import compares_surfaces, finds_regimes, published_rows
 from bulkwear.workflows.report import figure_findings
 from bulkwear.workflows.report.page_parameters import is_deformed
 from bulkwear.workflows.report.products import Job, every_run, figure, tables
@@ -41,7 +41,7 @@ def wear_against_travel(job: Job) -> Any:
     return curves.wear_against_travel(history, job.remarks), history
 
 
-@tables(inputs={"summary": SUMMARY}, tables={"intervals": "intervals.csv"}, when=plain_runs)
+@tables(inputs={"summary": SUMMARY}, tables={"intervals": "intervals.csv"}, when=compares_surfaces)
 def intervals(job: Job) -> dict[str, pd.DataFrame]:
     """Tell the wear of every setting over its plain twin's, with its interval over the packings."""
     from bulkwear.postproc.tables.packings import relative_wear_of_settings
@@ -56,6 +56,7 @@ def intervals(job: Job) -> dict[str, pd.DataFrame]:
     finding=figure_findings.share_of_pattern,
     charts=(charts.WEAR_SPLIT,),
     inputs={"summary": SUMMARY},
+    when=compares_surfaces,
     caption="""
     Worn volume on the flat base and on the pattern, over the volume of the plain sample in the same packing, geometric
     mean over the packings. The plain sample is 1 by definition (dashed line).

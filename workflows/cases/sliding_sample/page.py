@@ -81,7 +81,7 @@ def answers(folder: Path) -> list[str]:
     from bulkwear.workflows.cases.sliding_sample.search import page as search
 
     said = key_numbers.answers(read_summary(folder / "summary.csv"))
-    by_scale = particle_size.answers(folder)
+    by_scale = particle_size.answers(folder) if said else []  # all that it answers is of wear over plain
     of_study = [*by_scale, *said[-1:]] if by_scale else search.answers(folder) or said
     return [*grain_shape.answers(folder), *of_study]
 

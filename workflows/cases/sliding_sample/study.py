@@ -38,12 +38,22 @@ PATTERN = (  # columns that make two rows the same
 
 def compares_rows(study: Study) -> bool:
     """Return whether a study sets patterned over plain wear of several settings side by side."""
-    return len(study.chosen_settings) > 1 and bool(plain_runs(study))
+    return len(study.chosen_settings) > 1 and compares_surfaces(study)
+
+
+def compares_surfaces(study: Study) -> bool:
+    """Return whether a study has patterned samples and plain ones, which wear is told over."""
+    return {run.surface == PLAIN for run in study.runs} == {True, False}
 
 
 def varies_scale(study: Study) -> bool:
     """Return whether a study is one of particle size: the rows of its sliding samples give their particle scale."""
     return any(PARTICLE_SCALE in row for row in study.design_rows)
+
+
+def compares_sizes(study: Study) -> bool:
+    """Return whether a study of particle size tells wear over that of plain samples."""
+    return varies_scale(study) and compares_surfaces(study)
 
 
 def finds_regimes(study: Study) -> bool:

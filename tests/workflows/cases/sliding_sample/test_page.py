@@ -11,7 +11,7 @@ from bulkwear.workflows.cases.sliding_sample.study import published_rows, replic
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.page_parameters import answers_of_study, page_parameters
 from bulkwear.workflows.report.predictions import prediction_table
-from bulkwear.workflows.report.products import figures_of
+from bulkwear.workflows.report.products import figures_of, products_of_study
 from tests.support.finished_samples import CYCLES, embedded, finished_page
 
 RELATIVE = 1e-9  # numbers pass through CSV text
@@ -162,6 +162,18 @@ def test_single_row_has_no_figure_of_rows(config):
     config.edit("studies/small.yaml", "surfaces: [convex]", "surfaces: [convex, plain]")
     config.edit("designs/small.csv", "R5,4,8,60,6.0,2.0,30\n", "")
     assert "relative_wear" not in names_of(load_study("small", config.project))
+
+
+@pytest.mark.parametrize("surface", ["convex", "plain"])
+@pytest.mark.parametrize("rows", [{}, {"rows": ["R9"]}])
+def test_one_surface_alone_makes_its_page_without_pairs(config, tmp_path, surface, rows):
+    """Nothing is told over a plain twin, of one row and of two."""
+    config.edit("studies/small.yaml", "surfaces: [convex, plain]", f"surfaces: [{surface}]")
+    study = load_study("small", config.project, rows)
+    products = products_of_study(study)
+    assert not {"relative_wear", "wear_split", "intervals"} & set(products)
+    page = finished_page(tmp_path / "results" / study.name, study)
+    assert "of the plain sample's volume" not in page and "over plain wear" not in page
 
 
 def test_only_what_deforms_has_updates_and_a_film(config):

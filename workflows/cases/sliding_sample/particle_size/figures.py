@@ -13,7 +13,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size import figure_finding
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import (
     bumps_and_particles,
 )
-from bulkwear.workflows.cases.sliding_sample.study import flow_runs, varies_scale
+from bulkwear.workflows.cases.sliding_sample.study import compares_sizes, flow_runs, varies_scale
 from bulkwear.workflows.report.figure_findings import deepest_run
 from bulkwear.workflows.report.page_parameters import is_deformed
 from bulkwear.workflows.report.products import Job, every_run, figure, tables
@@ -40,6 +40,7 @@ size_figure = partial(figure, "Particle size", when=varies_scale)
     inputs={"summary": SUMMARY, "published": PUBLISHED_LINES},
     tables=WEAR_TABLES | {"published_lines": "particle_size/published_lines.csv"},
     charts=(charts.WEAR_AGAINST_SCALE,),
+    when=compares_sizes,
     caption="""
     Worn volume of the plain sample, of the patterned sample, its base and its pattern, over that of the plain sample
     with the smallest particles simulated: small marks are packings, large ones their means with 95 % intervals. Thin
@@ -73,7 +74,7 @@ def wear_against_scale(job: Job) -> Any:
     finding=figure_findings.ratios_by_size,
     inputs={"wear": "results/{study}/figures/wear_against_scale.csv", "published": PUBLISHED_LINES},
     told={"rows": bumps_and_particles},
-    when=lambda study: varies_scale(study) and bool(bumps_and_particles(study)),
+    when=lambda study: compares_sizes(study) and bool(bumps_and_particles(study)),
     tables={"guidance": "particle_size/guidance.csv"},
     caption="""
     Wear of the patterned over that of the plain sample against four ratios of the median particle to a bump (Yan 2022,
@@ -271,7 +272,7 @@ def angular_velocity_along_sample(job: Job) -> Any:
         "published_packing": PUBLISHED_PACKING,
     },
     tables={"published": "particle_size/published.csv", "sentences": "particle_size/sentences.csv"},
-    when=varies_scale,
+    when=compares_sizes,
 )
 def size_findings(job: Job) -> Any:
     """Set what a study found beside the numbers of the source; tell of its critical scale."""

@@ -14,7 +14,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.study import (
     plain_parameters,
     settled_beds,
 )
-from bulkwear.workflows.cases.sliding_sample.study import plain_runs
+from bulkwear.workflows.cases.sliding_sample.study import plain_runs, varies_scale
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.report.products import Job
 
@@ -68,6 +68,7 @@ def packing_profiles(job: Job) -> Any:
         "folder": below("beds"),
         "template": of_template("bed_contacts"),
     },
+    when=lambda study: varies_scale(study) and bool(plain_runs(study)),
     caption="""
     Contacts per particle and porosity in the lower three quarters of the bed, settled before the plain sample and at
     rest behind it: packings small, their means with 95 % intervals large. Porosity cuts particles at the slab's edges;

@@ -25,6 +25,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import 
     lines_beside,
     wear_by_scale,
 )
+from bulkwear.workflows.cases.sliding_sample.study import compares_sizes, plain_runs
 from bulkwear.workflows.config.claims import ABOUT
 from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.report.sections import Block, Pictures, Section, Table, Text
@@ -39,8 +40,15 @@ BRACKETS, UNITS = re.compile(r"(.*) \((.*)\)"), {"mm3/m": "mm³/m", "%": "%"}  #
 
 
 def told(study: Study) -> dict[str, Any]:
-    """Return what the page is told besides what every page is: bumps and particles, and the costs of the packings."""
-    return {"bumps": bumps_and_particles(study), "costs": {"packing_profiles": "packings/solver_cost.csv"}}
+    """Return what the page is told besides what every page is: bumps and particles, whether wear is told over that of
+    plain samples, whether there are these, and the costs of the packings.
+    """
+    return {
+        "bumps": bumps_and_particles(study),
+        "compares_sizes": compares_sizes(study),
+        "has_plain": bool(plain_runs(study)),
+        "costs": {"packing_profiles": "packings/solver_cost.csv"},
+    }
 
 
 def answers(folder: Path) -> list[str]:
@@ -50,20 +58,22 @@ def answers(folder: Path) -> list[str]:
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
-    """Return the sections of a study of particle size; folder: results/<study>."""
+    """Return the sections of a study of particle size, those of wear over plain where it has both surfaces; folder:
+    results/<study>.
+    """
     steady = ("steady_by_scale", "relative_velocity", "wear_gradient")
     flow = (*(f"{name}velocity_by_layer" for name in ("", "upward_", "sideways_")), "angular_velocity_along_sample")
+    compares = study["told"]["compares_sizes"]
+    helps = [*critical_scale(study, folder), Pictures(["wear_against_scale"])] if compares else []
+    advice = [*guidance(study, folder), Pictures(["wear_against_size_ratios"])] if compares else []
     return [
-        Section(
-            "Up to which particle scale does the pattern help?",
-            [*critical_scale(study, folder), Pictures(["wear_against_scale"])],
-        ),
-        Section("Numbers of the source beside ours", beside_the_source(folder)),
+        Section("Up to which particle scale does the pattern help?", helps),
+        Section("Numbers of the source beside ours", beside_the_source(folder) if compares else []),
         Section("Relative velocity and wear rate", [*steady_windows(folder), Pictures(steady)]),
         Section("Wear of small and of large particles", [Pictures(["wear_maps"])]),
-        Section("Guidance", [*guidance(study, folder), Pictures(["wear_against_size_ratios"])]),
+        Section("Guidance", advice),
         Section("The flow by layer and along the sample", [Pictures([*flow, "flow_views"])]),
-        Section("Packing", [*packing(folder), Pictures(["packing_profiles", "bed_packing"])]),
+        Section("Packing", [*packing(study, folder), Pictures(["packing_profiles", "bed_packing"])]),
         Section("Single contacts", [*single_contacts(folder), Pictures(["collisions"])]),
     ]
 
@@ -199,17 +209,19 @@ def guidance(study: Mapping[str, Any], folder: Path) -> list[Block]:
     ]
 
 
-def packing(folder: Path) -> list[Block]:
-    """Return contacts and porosity of the containers' inner slabs and of the beds."""
+def packing(study: Mapping[str, Any], folder: Path) -> list[Block]:
+    """Return contacts and porosity of the containers' inner slabs, and of the beds, which are told at plain samples."""
     profiles = pd.read_csv(folder / "figures" / "packing_profiles.csv")
     rows = [
         {"particle_scale": scale, "state": state, "slabs": int(one["layer"].max()), **inner_means(one)}
         for (scale, state), one in profiles[profiles["state"] != "difference"].groupby(["particle_scale", "state"])
     ]
+    beds = [pd.read_csv(folder / "figures" / "bed_packing.csv")] if study["told"]["has_plain"] else []
+    then = "; then the beds" if beds else ""
     return [
-        Text("Containers, loose and shaken (dense), without the lowest and the highest slab; then the beds."),
+        Text(f"Containers, loose and shaken (dense), without the lowest and the highest slab{then}."),
         Table(pd.DataFrame(rows), "containers"),
-        Table(pd.read_csv(folder / "figures" / "bed_packing.csv"), "bed_packing"),
+        *(Table(each, "bed_packing") for each in beds),
     ]
 
 

@@ -8,13 +8,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.tables.display import in_display_units
 from bulkwear.postproc.tables.packings import BY, over_packings
 from bulkwear.postproc.tables.summary import patterned_name, read_summary
-from bulkwear.workflows.cases.sliding_sample.study import has_findings
+from bulkwear.workflows.cases.sliding_sample.study import compares_surfaces, has_findings
 from bulkwear.workflows.config.claims import date_of_rules
 from bulkwear.workflows.report.sections import Block, Pictures, Points, Section, Table, Text
 from bulkwear.workflows.report.sensitivity import read_indices, sensitivity_blocks
@@ -34,7 +35,12 @@ SIMULATED = "figures/confirmation.csv"
 
 def told(study: Study) -> dict[str, Any]:
     """Return what the sections are told of a study."""
-    return {"factors": study.factors, "findings": has_findings(study), "confirms": study.confirms}
+    return {
+        "factors": study.factors,
+        "findings": has_findings(study),
+        "confirms": study.confirms,
+        "compares_surfaces": compares_surfaces(study),
+    }
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
@@ -43,9 +49,10 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     wear = [] if by_scale else [Table(wear_by_row(study, folder), "wear_by_row")]
     steady = [] if by_scale else steady_windows(folder)
     profiles = ("velocity_profiles", "angular_velocity_profiles")
+    of_wear = "Wear over the plain twin" if of_study["compares_surfaces"] else "Wear by flow regime"
     return [
         *([confirmed(folder)] if of_study["confirms"] else []),
-        Section("Wear over the plain twin", [*wear, Pictures(["wear_by_regime", "normal_force_by_regime"])]),
+        Section(of_wear, [*wear, Pictures(["wear_by_regime", "normal_force_by_regime"])]),
         *(findings(study, folder) if of_study["findings"] else []),
         Section("Steady or not", [*steady, Pictures(["relative_velocity", "wear_gradient"])]),
         Section("The flow", [Pictures(["flow_views", "flow_views_second", *profiles])]),
@@ -81,6 +88,8 @@ def wear_by_row(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
         / plain["mean_normal_force_N"].reindex(patterned.index),
     )
     table = over_packings(runs, "wear_over_plain").drop(columns="surface")
+    if plain.empty:
+        table["packings"] = np.nan  # those that wear over plain has, which is not told
     named = {"setting": "row", "patterned_wear_m3_per_m": f"{patterned_name(summary['surface'])}_wear_m3_per_m"}
     first = ["setting", "particle_scale", "regime", "flow_steady", "packings", "wear_over_plain"]
     first += ["interval_low", "interval_high"]

@@ -28,20 +28,22 @@ PARTS = ("base_relative_wear", "bump_relative_wear")
 
 
 def groups_of_rows(regimes: pd.DataFrame) -> pd.Series:
-    """Return the regime of each design row, that of the patterned runs of all packings of its setting; index: row.
-    Packings that flow in different regimes are UNDECIDED together.
+    """Return the regime of each design row, that of the patterned runs of all packings of its setting, of its plain
+    runs where it has no other ones; index: row. Packings that flow in different regimes are UNDECIDED together.
 
     regimes: run, row, setting, surface and regime, as from `flow_history.flow_tables`.
     """
-    patterned = regimes[regimes["surface"] != PLAIN]
-    found = patterned.groupby("setting")["regime"]
-    shared = patterned["regime"].where(found.transform("nunique") == 1, UNDECIDED)
-    return patterned.assign(regime=shared).drop_duplicates("row").set_index("row")["regime"]
+    patterned = regimes["surface"] != PLAIN
+    alone = ~regimes["setting"].isin(regimes.loc[patterned, "setting"])
+    runs = regimes[patterned | alone]
+    found = runs.groupby("setting")["regime"]
+    shared = runs["regime"].where(found.transform("nunique") == 1, UNDECIDED)
+    return runs.assign(regime=shared).drop_duplicates("row").set_index("row")["regime"]
 
 
 def by_group(table: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
-    """Return a table with column row as one with the column regime of the row's group, groups in ORDER; rows without
-    a patterned run are undecided.
+    """Return a table with column row as one with the column regime of the row's group, groups in ORDER; rows that
+    `regimes` does not have are undecided.
     """
     group = groups_of_rows(regimes)
     table = table.assign(regime=[group.get(row, UNDECIDED) for row in table["row"]])

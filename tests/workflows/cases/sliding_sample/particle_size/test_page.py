@@ -1,5 +1,7 @@
 """The page of a study of particle size, on tables of three made-up rows."""
 
+from dataclasses import replace
+
 import pandas as pd
 import pytest
 
@@ -8,6 +10,7 @@ from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.markdown import durations, provenance, written
 from bulkwear.workflows.report.page import environment
 from bulkwear.workflows.report.page_parameters import answers_of_study, page_parameters
+from bulkwear.workflows.report.products import products_of_study
 from bulkwear.workflows.report.sections import Pictures, shown
 from tests.support.finished_runs import leave_runs
 from tests.workflows.cases.sliding_sample.particle_size.test_figures import OWN, make
@@ -142,6 +145,22 @@ def test_every_figure_of_particle_size_has_its_section(folder, page):
     shown = [name for block in blocks if isinstance(block, Pictures) for name in block.names]
     assert len(shown) == len(set(shown)) and set(shown) <= set(page["figures"])
     assert set(shown) == (OWN - {"size_findings"}) | {"relative_velocity", "wear_gradient", "flow_views"}
+
+
+@pytest.mark.parametrize(("surface", "needless"), [("plain", ()), ("convex", ("bed_packing",))])
+def test_one_surface_alone_has_the_rest(study, folder, tmp_path, surface, needless):
+    """Without wear over plain what is told of it is left out, and without plain samples the beds before and behind."""
+    alone = replace(study, runs=tuple(run for run in study.runs if run.surface == surface))
+    pairs = {"wear_against_scale", "wear_against_size_ratios", "size_findings"}
+    assert OWN - set(products_of_study(alone)) == pairs | set(needless)
+    own = tmp_path / "results"
+    left = ("steady_by_scale", "packing_profiles", *({"bed_packing"} - set(needless)))
+    for name in (*(f"figures/{name}.csv" for name in left), "particle_size/collisions.csv"):
+        (own / name).parent.mkdir(parents=True, exist_ok=True)
+        (own / name).write_bytes((folder / name).read_bytes())
+    found = [shown(section, []) for section in sections({**page_parameters(alone), "told": told(alone)}, own)]
+    titles = [section.title for section in found if section]
+    assert titles == ["Relative velocity and wear rate", "Packing", "Single contacts"]
 
 
 def test_the_html_page_shows_the_same(study, folder, page):

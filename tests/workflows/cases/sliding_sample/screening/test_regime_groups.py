@@ -53,12 +53,13 @@ def summary(regimes):
 
 
 def test_a_row_is_in_the_group_of_its_convex_run(regimes, summary):
-    """The plain twin goes with its row, and a row without a patterned run is undecided; continuous rows come first."""
+    """The plain twin goes with its row; continuous rows come first; a plain run without twin has its own, none no one."""
     table = by_group(summary, regimes)
     assert table["row"].tolist() == ["R1", "R1", "R3", "R3", "R2", "R2"]
     assert table["regime"].tolist() == [CONTINUOUS] * 4 + [DISCONTINUOUS] * 2
     plain = regimes[regimes["surface"] == "plain"]
-    assert set(by_group(summary, plain)["regime"]) == {UNDECIDED}
+    assert groups_of_rows(plain).to_dict() == plain.set_index("row")["regime"].to_dict()
+    assert set(by_group(summary, regimes.head(0))["regime"]) == {UNDECIDED}
 
 
 def test_packings_of_different_regimes_are_undecided(regimes):
