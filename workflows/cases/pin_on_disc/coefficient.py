@@ -10,6 +10,7 @@ import pandas as pd
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
 from bulkwear.postproc.tables.summary import published_value
 from bulkwear.postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient, scaling_factor
+from bulkwear.workflows.cases.pin_on_disc.runs import over_test
 from bulkwear.workflows.cases.pin_on_disc.volume import published_volume
 
 CALIBRATED_FROM = 8  # revolutions on, where the thesis has its run-in behind it
@@ -49,14 +50,15 @@ def calibration_table(
 def calibrated(volumes: pd.DataFrame, fits: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
     """Calibration of both schemes, of Eq 5.9 and of the published fits against the laboratory's volume.
 
-    volumes : of all runs; each number of revolutions from CALIBRATED_FROM on (or the last, if a run is shorter) is
-    calibrated with the runs that have it; the published fits where they grow with the coefficient. As from
-    `calibration_table`.
+    volumes : of all runs, taken over load times track and times those of the laboratory; each number of revolutions
+    from CALIBRATED_FROM on (or the last, if a run is shorter) is calibrated with the runs that have it; the published
+    fits where they grow with the coefficient. As from `calibration_table`.
     """
     ours = volumes[volumes["series"] == "coefficient"].rename(columns={"removed_volume_m3": "volume_m3"})
     touched = ours[ours["scheme"] == "per_triangle"]
     touched = touched.assign(volume_m3=touched["touched_centroid_path_volume_m3"], scheme=TOUCHED)
     ours = pd.concat([ours, touched], ignore_index=True)
+    ours["volume_m3"] /= over_test(ours, published)
     longest = int(ours["revolution"].max())
     shown = range(min(CALIBRATED_FROM, longest), longest + 1)
     simulated = pd.concat([ours[ours["revolution"].isin(shown)], growing_fits(fits, shown)], ignore_index=True)

@@ -15,7 +15,13 @@ from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MILLIMETRES
 from bulkwear.postproc.tables.summary import published_value
 from bulkwear.workflows.cases.pin_on_disc.contours import section_table
 from bulkwear.workflows.cases.pin_on_disc.run_in import SIZES
-from bulkwear.workflows.cases.pin_on_disc.runs import CALIBRATED, common_revolution, reference_runs
+from bulkwear.workflows.cases.pin_on_disc.runs import (
+    CALIBRATED,
+    common_revolution,
+    conditions_words,
+    over_test,
+    reference_runs,
+)
 
 EDGES_PER_WIDTH = 5.0  # -, meshes up to a fifth of the groove's width are to agree
 STABLE_PERCENT = 5.0  # within which they are to agree
@@ -76,21 +82,23 @@ def mesh_stability(series: pd.DataFrame) -> pd.DataFrame:
 def compared_runs(runs: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
     """Runs that are compared with thesis and laboratory: the reference runs, then those with the laboratory's volume.
 
-    The law gives a run that volume if its coefficient times its revolutions is the laboratory's.
+    The law gives a run that volume if its coefficient times its load, track and revolutions is the laboratory's.
     """
     of_test, revolutions = (
         published_value(published, name, "laboratory") for name in ("wear_coefficient", "revolutions")
     )
-    reach = runs["wear_coefficient_per_pa"] * runs["revolutions"] / (of_test * revolutions)
+    reach = runs["wear_coefficient_per_pa"] * runs["revolutions"] / (of_test * revolutions) * over_test(runs, published)
     same = (runs["series"] == "coefficient") & (np.abs(reach - 1.0) <= SAME_VOLUME)
     chosen = dict.fromkeys([*reference_runs(runs, published, CALIBRATED).values(), *runs.loc[same, "run"]])
     return runs.set_index("run", drop=False).loc[list(chosen)].reset_index(drop=True)
 
 
-def case_name(run: pd.Series, revolution: int) -> str:
-    """What a compared run is called."""
+def case_name(run: pd.Series, revolution: int, published: pd.DataFrame) -> str:
+    """What a compared run is called, with load and track where they are not the source's."""
     scheme = run["scheme"].replace("_", " ")
-    return f"{scheme}, {1e11 * run['wear_coefficient_per_pa']:.3g}e-11/Pa, {revolution} rev."
+    own = conditions_words(run.to_frame().T.infer_objects(), published)
+    name = f"{scheme}, {1e11 * run['wear_coefficient_per_pa']:.3g}e-11/Pa, {revolution} rev."
+    return f"{name}, {own}" if own else name
 
 
 def compared_cases(compared: pd.DataFrame, contours: pd.DataFrame, volumes: pd.DataFrame, published) -> pd.DataFrame:
@@ -107,7 +115,7 @@ def compared_cases(compared: pd.DataFrame, contours: pd.DataFrame, volumes: pd.D
         at_end = (volumes["run"] == run["run"]) & (volumes["revolution"] == last)
         volume = CUBIC_MILLIMETRES * float(volumes.loc[at_end, "removed_volume_m3"].iloc[0])
         values = {"depth_mm": sizes["depth_m"], "width_mm": sizes["opening_width_m"], "volume_mm3": volume}
-        rows.append({"case": case_name(run, last), "run": run["run"]} | values)
+        rows.append({"case": case_name(run, last, published), "run": run["run"]} | values)
     depth, width = laboratory_segment(published)
     volume = published_value(published, "volume", "laboratory")
     rows.append({"case": "pin's shape", "run": "", "depth_mm": depth, "width_mm": width, "volume_mm3": volume})

@@ -37,7 +37,7 @@ def folder_of(files: SimpleNamespace) -> Path:
     caption="""
     What is simulated (Yan 2022, Fig 5.5): a ring of the disc about the track, seen from above with the size of its
     elements, and the pin on it from the side. The pin is held in the plane, free to sink, and goes round
-    anticlockwise from x = 22 mm; the disc rests. In the thesis the disc turns and the pin rests.
+    anticlockwise from the x axis; the disc rests. In the thesis the disc turns and the pin rests.
     """,
 )
 def disc_setup(job: Job) -> Any:

@@ -11,6 +11,7 @@ import pandas as pd
 from bulkwear.postproc.statistics.intervals import estimate
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES
 from bulkwear.postproc.tables.summary import read_summary
+from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.pin_on_disc import findings
 from bulkwear.workflows.report.predictions import Foreseen, error_of, foreseen, prediction_blocks
 from bulkwear.workflows.report.sections import Block, Cards, Pictures, Section, Table
@@ -181,6 +182,7 @@ def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:
 def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return (what, how) of what is simpler here than on a rig, besides scale, wear and comparison."""
     runs = list(study["parameters"].values())
+    weights = range_text([_weight_percent(run) for run in runs])
     overlap = range_text([run["derived"]["overlap_m"] * 1e6 for run in runs])
     moduli = range_text([run["particle"]["shear_modulus_pa"] for run in runs])
     restitution = range_text([run["sample_material"]["contact"]["restitution"] for run in runs])
@@ -194,8 +196,8 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         (
             "The pin goes round",
             "The disc rests and the pin is taken round, seen from a disc that turns under a pin at rest; the solver "
-            "gets the stretch of the track that a wear cycle needs. There is no gravity: the pin's weight is 0.1 % of "
-            "the load.",
+            "gets the stretch of the track that a wear cycle needs. There is no gravity: the pin's weight would be "
+            f"{weights} % of the load.",
         ),
         (
             "Damping assumed",
@@ -209,6 +211,11 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
             "each arc, not at every time step.",
         ),
     ]
+
+
+def _weight_percent(run: Mapping[str, Any]) -> float:
+    """Return the weight of a run's pin, which is not simulated, over its load (%)."""
+    return 100.0 * run["derived"]["pin_mass_kg"] * GRAVITY / run["pin"]["load_n"]
 
 
 def further_cap(settings: Mapping[str, Any]) -> str:

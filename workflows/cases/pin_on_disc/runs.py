@@ -16,11 +16,14 @@ from bulkwear.postproc.mesh import SurfaceMesh, read_surface
 from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.postproc.tables.summary import published_value
+from bulkwear.workflows.report.sentences import listed
+from bulkwear.workflows.report.text import range_text
 
 DESIGN = ("run", "series", "scheme", "wear_coefficient_per_pa", "element_size_mm", "load_n", "track_radius_mm")
 SCHEMES = ("conserving", "per_triangle")  # in the order in which they are shown
 REFERENCE = "reference_wear_coefficient"  # published, of the reference simulations: Yan 2022, Fig 5.7 to 5.14
 CALIBRATED = "wear_coefficient"  # published, of the simulation with the laboratory's volume: Fig 5.17, 5.18, Table 5.4
+SAME = 1e-6  # -, to which loads and tracks are the same
 COEFFICIENT_TOLERANCE = 1e-6  # -, to which two wear coefficients are the same
 FORCES = ("vertical_force_N", "normal_force_N")
 WHOLE = 1e-6  # revolutions that a cycle may end beside a whole one
@@ -63,6 +66,42 @@ def whole_revolutions(wear: pd.DataFrame) -> pd.DataFrame:
 def common_revolution(table: pd.DataFrame, at_most: int) -> int:
     """Last revolution that all runs of a table have, not beyond `at_most`."""
     return int(min(table.groupby("run")["revolution"].max().min(), at_most))
+
+
+def over_test(table: pd.DataFrame, published: pd.DataFrame) -> pd.Series:
+    """Load times track of each row over those of the source, which its test and its simulations share (-).
+
+    table : with `load_n` and `track_radius_m`. By Archard's law volumes at equal coefficient and revolutions are so.
+    """
+    load, track = source_conditions(published)
+    return table["load_n"] * table["track_radius_m"] / (load * track)
+
+
+def source_conditions(published: pd.DataFrame) -> tuple[float, float]:
+    """Load (N) and radius of the track (m) of the source."""
+    load, track = (published_value(published, name, "laboratory") for name in ("load", "track_radius"))
+    return load, track / MILLIMETRES
+
+
+def as_tested(table: pd.DataFrame, published: pd.DataFrame) -> np.ndarray:
+    """Whether rows with `load_n` and `track_radius_m` have the load and the track of the source."""
+    return np.isclose(table[["load_n", "track_radius_m"]], source_conditions(published), rtol=SAME, atol=0.0).all(
+        axis=1
+    )
+
+
+def conditions_words(table: pd.DataFrame, published: pd.DataFrame) -> str:
+    """Which load and track rows have instead of the source's; "" where all have these. table : as in `as_tested`."""
+    load, track = source_conditions(published)
+    lengths = MILLIMETRES * table["track_radius_m"]
+    kinds = (("", table["load_n"], load, "N"), ("a track of ", lengths, MILLIMETRES * track, "mm"))
+    return listed(
+        [
+            f"{words}{range_text(values.tolist(), 4)} {unit} instead of {theirs:g} {unit}"
+            for words, values, theirs, unit in kinds
+            if not np.isclose(values, theirs, rtol=SAME, atol=0.0).all()
+        ]
+    )
 
 
 def reference_runs(runs: pd.DataFrame, published: pd.DataFrame, of: str) -> dict[str, str]:

@@ -15,7 +15,9 @@ from bulkwear.postproc.tables.summary import published_value, totals_of_runs
 from bulkwear.workflows.cases.pin_on_disc.runs import (
     COEFFICIENT_TOLERANCE,
     SCHEMES,
+    as_tested,
     same_coefficient,
+    source_conditions,
     whole_revolutions,
 )
 
@@ -175,29 +177,32 @@ def published_volume(published: pd.DataFrame, coefficient: float, revolutions: n
     return np.polynomial.polynomial.polyval(x, terms) / CUBIC_MILLIMETRES
 
 
-def beside_laws(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
-    """Volumes of runs with law_volume_m3, alpha F L, and published_volume_m3, by the source's fits.
+def beside_laws(volumes: pd.DataFrame, fits: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
+    """Volumes of runs with law_volume_m3, alpha F L, and published_volume_m3, by the source's fits, NaN of runs of
+    another load or track.
 
     Arguments as for `excess_factors`.
     """
     parts = []
     for (coefficient, load, track), rows in volumes.groupby(list(FIXED), sort=False):
-        theirs = published_volume(published, coefficient, rows["revolution"].to_numpy())
+        theirs = published_volume(fits, coefficient, rows["revolution"].to_numpy())
+        beside = np.where(as_tested(rows, published), theirs, np.nan)
         law = law_volume(coefficient, load, track, rows["revolution"])
-        parts.append(rows.assign(law_volume_m3=law, published_volume_m3=theirs))
+        parts.append(rows.assign(law_volume_m3=law, published_volume_m3=beside))
     return pd.concat(parts).sort_index()
 
 
-def excess_factors(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
+def excess_factors(volumes: pd.DataFrame, fits: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
     """What a volume over alpha F L is made of, per run and whole revolution, all summed since the start.
 
     volumes : as from `volumes_of_run` with `run`, `scheme`, `wear_coefficient_per_pa`, `load_n`, `track_radius_m`.
     The factors of CANDIDATES build on one another: their product is the volume by Eq 5.9, summed over the triangles in
     contact (of a conserving run over all), over alpha F L, exactly. `unexplained` is the published volume over alpha
-    F L, over that product. Beside stand `summing_over_all`, the last factor if Eq 5.9 is summed over all triangles, and
+    F L, with the load and the track that it is of, over that product. fits : published volumes; published : values of
+    the source. Beside stand `summing_over_all`, the last factor if Eq 5.9 is summed over all triangles, and
     `contacts`, the factor that would come of it if every contact were charged with the whole load.
     """
-    parts = []
+    parts, theirs = [], source_conditions(published)
     for _, row in volumes.groupby("run", sort=False):
         coefficient, load, track = (row[name].iloc[0] for name in FIXED)
         law = law_volume(coefficient, load, track, row["revolution"])
@@ -212,7 +217,8 @@ def excess_factors(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFra
             summing_over_all=row["centroid_path_volume_m3"] / row["removed_volume_m3"],
             contacts=row["contacts_per_step"],
             vertical_force_over_load=row["mean_vertical_force_N"].abs() / load,
-            published=published_volume(published, coefficient, row["revolution"].to_numpy()) / law,
+            published=published_volume(fits, coefficient, row["revolution"].to_numpy())
+            / law_volume(coefficient, *theirs, row["revolution"]),
         )
         product = table[list(CANDIDATES)].prod(axis=1, skipna=False)
         parts.append(table.assign(product=product, unexplained=table["published"] / product))

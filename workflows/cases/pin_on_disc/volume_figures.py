@@ -53,14 +53,14 @@ def pin_comparison(job: Job) -> Any:
     inputs={"published": PUBLISHED, "factors": "results/{study}/figures/force_rise.csv"},
     told={"update_remark": update_remark},
     caption="""
-    The published volumes are 2 to 6 times alpha F L. One candidate at a time, as factors that multiply exactly to the
-    volume that the thesis' own rules would sum up: the summed normal force over the load, the path of the contact
-    point over the length of the track, the share of the wear that is taken up and not carried over to later updates,
-    the displacement rule (volume that the surface loses over the wear taken up; 1 if volume is conserved) and the
-    rule by which volume is summed. Eq 5.9 sums area times path of the centroid over "the elements"; if those are all
-    triangles it finds what the surface has lost, if they are the triangles in contact at the time it leaves out their
-    neighbours, which move as well. The bars take the second reading (a conserving patch moves triangles that nothing
-    touches, its sum is over all), the table holds both.
+    The published volumes are 2 to 6 times alpha F L, by the load and the track that they are of. One candidate at a
+    time, as factors that multiply exactly to the volume that the thesis' own rules would sum up: the summed normal
+    force over the load, the path of the contact point over the length of the track, the share of the wear that is taken
+    up and not carried over to later updates, the displacement rule (volume that the surface loses over the wear taken
+    up; 1 if volume is conserved) and the rule by which volume is summed. Eq 5.9 sums area times path of the centroid
+    over "the elements"; if those are all triangles it finds what the surface has lost, if they are the triangles in
+    contact at the time it leaves out their neighbours, which move as well. The bars take the second reading (a
+    conserving patch moves triangles that nothing touches, its sum is over all), the table holds both.
 
     The second reading depends on the length of a wear update. On a flat disc it gives 1 times alpha times the sliding
     work with one triangle per update, about 3 times with an arc of many triangles, where all triangles give about 6
@@ -90,11 +90,12 @@ def excess_volume(job: Job) -> Any:
     "Volume against revolutions",
     finding=figure_findings.over_law,
     charts=(charts.WEAR_VOLUME,),
-    inputs={"design": DESIGN, "fits": FITS, "volumes": VOLUMES},
+    inputs={"design": DESIGN, "published": PUBLISHED, "fits": FITS, "volumes": VOLUMES},
     tables={"trends": "figures/wear_volume_trends.csv"},
     caption="""
     Counterpart of Fig 5.15 (Yan 2022). Volume that the surface has lost, by wear coefficient and displacement scheme,
-    beside the published fits (dashed, drawn as printed from the first revolution on) and the volume alpha F L of
+    beside the published fits (dashed, drawn as printed from the first revolution on, beside runs of their load and
+    track alone) and the volume alpha F L of
     Archard's law with the load F. For the per-triangle rule the volume is also summed as the thesis does (Eq 5.9:
     absolute paths of the centroids times areas). Titles hold the 95 % interval of how much what a revolution adds
     changes over the run: 0 for linear growth. It is that of the run that is shown, for increments correlated with their
@@ -106,14 +107,17 @@ def wear_volume(job: Job) -> Any:
     import pandas as pd
 
     from bulkwear.workflows.cases.pin_on_disc.plots import volume as plots
-    from bulkwear.workflows.cases.pin_on_disc.runs import of_runs, pin_runs
+    from bulkwear.workflows.cases.pin_on_disc.runs import conditions_words, of_runs, runs_and_published
     from bulkwear.workflows.cases.pin_on_disc.volume import beside_laws, volume_trends
 
-    volumes = of_runs(pin_runs(job.files.design), job.files.volumes)
+    runs, published = runs_and_published(job.files)
+    volumes = of_runs(runs, job.files.volumes)
     volumes = volumes[volumes["series"] == "coefficient"]
     trends, fits = volume_trends(volumes), pd.read_csv(job.files.fits)
-    drawn = plots.wear_volume(volumes, fits, trends, job.remarks)
-    return drawn, beside_laws(volumes, fits), {"trends": trends}
+    other = conditions_words(volumes, published)
+    remarks = [*([f"{other}: the published fits are left out beside them"] if other else []), *job.remarks]
+    table = beside_laws(volumes, fits, published)
+    return plots.wear_volume(table, fits, trends, remarks), table, {"trends": trends}
 
 
 @figure(
@@ -121,7 +125,7 @@ def wear_volume(job: Job) -> Any:
     "Rise of the summed normal force",
     finding=figure_findings.force_over_load,
     charts=(charts.FORCE_RISE,),
-    inputs={"fits": FITS, "volumes": "results/{study}/figures/wear_volume.csv"},
+    inputs={"published": PUBLISHED, "fits": FITS, "volumes": "results/{study}/figures/wear_volume.csv"},
     caption="""
     Counterpart of Fig 5.16 (Yan 2022), which explains the excess volume by a horizontal part of the normal force in
     the worn groove. Measured: the vertical force over the load (1 where the load is carried), the sum of the normal
@@ -135,7 +139,8 @@ def force_rise(job: Job) -> Any:
     from bulkwear.workflows.cases.pin_on_disc.plots import volume as plots
     from bulkwear.workflows.cases.pin_on_disc.volume import excess_factors
 
-    factors = excess_factors(pd.read_csv(job.files.volumes), pd.read_csv(job.files.fits))
+    read = (pd.read_csv(path) for path in (job.files.volumes, job.files.fits, job.files.published))
+    factors = excess_factors(*read)
     return plots.force_rise(factors, job.remarks), factors
 
 
@@ -173,6 +178,7 @@ def calibration(job: Job) -> Any:
     from bulkwear.workflows.cases.pin_on_disc.run_in import run_in_table
     from bulkwear.workflows.cases.pin_on_disc.runs import (
         REFERENCE,
+        conditions_words,
         of_runs,
         only_reference,
         reference_remark,
@@ -187,6 +193,8 @@ def calibration(job: Job) -> Any:
     limits = coefficient.scaling_limits(run_ins, revolutions)
     laboratory = coefficient.coefficient_of_laboratory(published)
     remarks = [f"run-in: {reference_remark(runs, published, REFERENCE)}", *job.remarks]
+    if other := conditions_words(runs[runs["series"] == "coefficient"], published):
+        remarks.append(f"{other}: volumes are taken over load and track, times the source's")
     drawn = plots.calibration(table, laboratory, revolutions, limits, remarks)
     caps = coefficient.step_cap_limits(volumes, laboratory[0])
     table = coefficient.beside_laboratory(table, laboratory)
@@ -202,8 +210,8 @@ def calibration(job: Job) -> Any:
     when=has_series("size"),
     caption="""
     Counterpart of Fig 4.6 (Yan 2022): volume of one revolution, alpha times the solver's sliding work, over alpha F
-    L, for pins of scale 1 to 8. The load is the same, so is the volume; the thesis has differences under 0.6 %. The
-    pins are spheres of 3 to 24 mm radius, their mass grows with the cube of the scale, and there is no gravity: load
+    L, by the scale of the pin. The load is the same, so is the volume; the thesis has differences under 0.6 %. The
+    pins are spheres whose radius grows with the scale and whose mass grows with its cube, and there is no gravity: load
     and track stay, only the pin is scaled.
     """,
 )

@@ -101,6 +101,15 @@ def test_calibration_of_all_schemes(pins):
     assert set(table["scheme"]) == {"conserving", "per_triangle", TOUCHED, PUBLISHED_FITS}
 
 
+@pytest.mark.parametrize("runs", [["c"], ["a", "b", "c", "d", "h"]])
+def test_another_load_gives_the_same_coefficient(pins, runs):
+    """Runs of twice the load, one or all, wear twice as much, and the laboratory's test asks for the same of them."""
+    *_, volumes = pins
+    other = volumes.copy()
+    other.loc[other["run"].isin(runs), ["load_n", "removed_volume_m3", "touched_centroid_path_volume_m3"]] *= 2.0
+    pd.testing.assert_frame_equal(calibrated(other, FITS, VALUES), calibrated(volumes, FITS, VALUES))
+
+
 @pytest.mark.parametrize(("revolutions", "theirs"), [(1, False), (2, False), (3, True)])
 def test_few_revolutions_are_calibrated_without_the_published_fits(pins, revolutions, theirs):
     """After 1 and 2 revolutions the published fits do not grow with the coefficient: ours alone are calibrated."""

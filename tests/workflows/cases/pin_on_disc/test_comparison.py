@@ -124,6 +124,16 @@ def test_compared_cases(pins):
     assert table.iloc[-1]["volume_to_laboratory_percent"] == pytest.approx(0.0)
 
 
+def test_another_load_has_the_laboratorys_volume_with_another_coefficient(pins):
+    """At twice the load half the coefficient removes it, not the same; cases tell their load and the source's."""
+    _, runs, contours, volumes = pins
+    doubled = runs.assign(load_n=2.0 * runs["load_n"])
+    half = doubled.assign(wear_coefficient_per_pa=0.5 * doubled["wear_coefficient_per_pa"])
+    assert ["h" in set(compared_runs(each, VALUES)["run"]) for each in (runs, doubled, half)] == [True, False, True]
+    cases = compared_cases(compared_runs(doubled, VALUES), contours, volumes, VALUES)
+    assert cases.loc[1, "case"] == "per triangle, 1.7e-11/Pa, 3 rev., 10 N instead of 5 N"
+
+
 def test_sections_beside_the_laboratory(pins):
     """Three angles of every compared run under the name of its case."""
     folder, runs, contours, volumes = pins

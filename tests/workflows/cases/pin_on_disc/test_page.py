@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.pin_on_disc import page
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.markdown import written
@@ -11,6 +12,7 @@ from bulkwear.workflows.report.page import write_page
 from bulkwear.workflows.report.page_parameters import page_parameters
 from bulkwear.workflows.report.predictions import error_of, prediction_note, prediction_table
 from bulkwear.workflows.report.sections import Cards, Pictures, Table
+from bulkwear.workflows.report.text import range_text
 from tests.support import pin_study
 
 RELATIVE = 1e-9  # numbers pass through CSV text
@@ -111,6 +113,19 @@ def test_a_study_that_is_not_finished_is_refused(tmp_path):
     """Its summary is missing, and is named."""
     with pytest.raises(FileNotFoundError, match=r"summary.csv"):
         page.sections({"figures": {}}, tmp_path)
+
+
+def test_the_weight_of_the_pin_is_that_of_its_runs():
+    """A range over the load: that of the pin of the quick study's series of scales is 4 cubed times that of scale 1."""
+    study = load_study("pin_on_disc", overrides={"fidelity": "quick"})
+    parameters = {run.name: run.parameters for run in study.runs}
+    told = dict(page.simplifications({"settings": study.settings, "parameters": parameters}))["The pin goes round"]
+    shares = {
+        run: 100.0 * GRAVITY * each["derived"]["pin_mass_kg"] / each["pin"]["load_n"]
+        for run, each in parameters.items()
+    }
+    assert shares["s4"] == pytest.approx(4.0**3 * shares["s1"]) and shares["s4"] == max(shares.values())
+    assert f"weight would be {range_text(list(shares.values()))} % of the load" in told
 
 
 def test_the_page_needs_no_bed_and_no_sample(pins, tmp_path):

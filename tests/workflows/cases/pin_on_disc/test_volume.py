@@ -11,6 +11,7 @@ from bulkwear.workflows.cases.pin_on_disc.volume import (
     SLOWER,
     UNSAID,
     VOLUMES,
+    beside_laws,
     excess_factors,
     groove_remark,
     groove_volume,
@@ -151,7 +152,7 @@ def test_factors_multiply_to_the_whole(tmp_path):
     """Rise, slip, share taken up, displacement rule and summing rule multiply to the volume by Eq 5.9 over touched
     triangles over alpha F L, exactly; the published volume over that product is left."""
     volumes = two_revolutions(tmp_path)
-    factors = excess_factors(volumes, FITS)
+    factors = excess_factors(volumes, FITS, VALUES)
     law = law_volume(1e-11, LOAD, TRACK, [1, 2])
     np.testing.assert_allclose(factors["product"], volumes["touched_centroid_path_volume_m3"] / law, rtol=1e-12)
     np.testing.assert_allclose(factors[list(CANDIDATES)].prod(axis=1), factors["product"], rtol=1e-12)
@@ -163,12 +164,26 @@ def test_factors_multiply_to_the_whole(tmp_path):
     np.testing.assert_allclose(factors["unexplained"] * factors["product"], factors["published"], rtol=1e-12)
 
 
+def test_published_volumes_are_over_the_law_of_their_own_load(tmp_path):
+    """Twice the load wears twice as much: all factors stay, the published one too; no fit stands beside it."""
+    volumes = two_revolutions(tmp_path)
+    doubled = volumes.assign(
+        load_n=2.0 * LOAD,
+        **{name: 2.0 * volumes[name] for name in (*VOLUMES.values(), "carried_volume_m3")},
+        **{name: 2.0 * volumes[name] for name in ("mean_normal_force_N", "mean_vertical_force_N")},
+    )
+    ours, theirs = (excess_factors(each, FITS, VALUES) for each in (doubled, volumes))
+    pd.testing.assert_frame_equal(ours, theirs)
+    assert beside_laws(doubled, FITS, VALUES)["published_volume_m3"].isna().all()
+    assert beside_laws(volumes, FITS, VALUES)["published_volume_m3"].notna().all()
+
+
 def test_carried_wear_is_a_factor_of_its_own(tmp_path):
     """A fifth of the law's wear carried: the share 0.8 is taken up, which the rule turns into 1.8 / 0.8 of it; the
     product stays."""
     volumes = two_revolutions(tmp_path)
     carried = volumes.assign(carried_volume_m3=0.2 * volumes["worn_volume_m3"])
-    factors, without = (excess_factors(each, FITS) for each in (carried, volumes))
+    factors, without = (excess_factors(each, FITS, VALUES) for each in (carried, volumes))
     np.testing.assert_allclose(factors["taken_up"], 0.8)
     np.testing.assert_allclose(without["taken_up"], 1.0)
     np.testing.assert_allclose(factors["displacement_rule"], 1.8 / 0.8)
@@ -190,7 +205,7 @@ def test_volume_of_a_published_groove():
 def test_excess_is_the_displacement_rule(pins):
     """Of six times the law's volume six are the displacement rule's, 1.02 the rise; conserving runs have 1."""
     *_, volumes = pins
-    factors = excess_factors(volumes[volumes["series"] == "coefficient"], FITS)
+    factors = excess_factors(volumes[volumes["series"] == "coefficient"], FITS, VALUES)
     shown = shown_factors(factors, VALUES)
     assert list(zip(shown["run"], shown["revolution"], strict=True)) == [
         ("c", 3),

@@ -51,18 +51,18 @@ VOLUME_LOOKS = {  # volume, line and what it is called
 }
 
 
-def wear_volume(volumes: pd.DataFrame, published: pd.DataFrame, trends: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+def wear_volume(volumes: pd.DataFrame, fits: pd.DataFrame, trends: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw volume (mm3) against revolutions, a panel per wear coefficient: both schemes, the published fit, alpha F L.
 
-    volumes : as from `volume.volumes_of_run` with `scheme`, `wear_coefficient_per_pa`, `load_n`,
-    `track_radius_m`; published : coefficients of Eq 5.11-5.15; trends : as from `volume.volume_trends`.
+    volumes : as from `volume.beside_laws`, whose published volumes say which coefficients have a fit beside them;
+    fits : coefficients of Eq 5.11-5.15; trends : as from `volume.volume_trends`.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     coefficients = sorted(volumes["wear_coefficient_per_pa"].unique())
     panels = facets(figure, coefficients)
     for coefficient, axes in panels.items():
         chosen = volumes[volumes["wear_coefficient_per_pa"] == coefficient]
-        _volume_panel(axes, chosen, coefficient, published)
+        _volume_panel(axes, chosen, coefficient, fits)
         said = [coefficient_name(coefficient), *_changes(same_coefficient(trends, coefficient))]
         axes.set_title("\n".join(said), loc="left", fontsize=SMALLEST_FONT)
         axes.set_xlim(0.0, volumes["revolution"].max() + 0.5)
@@ -81,13 +81,14 @@ def _changes(trends: pd.DataFrame) -> list[str]:
     ]
 
 
-def _volume_panel(axes: Axes, chosen: pd.DataFrame, coefficient: float, published: pd.DataFrame) -> None:
-    first = chosen.iloc[0]
+def _volume_panel(axes: Axes, chosen: pd.DataFrame, coefficient: float, fits: pd.DataFrame) -> None:
     x = np.linspace(0.0, chosen["revolution"].max(), 61)
-    law = law_volume(coefficient, first["load_n"], first["track_radius_m"], x)
-    axes.plot(x, CUBIC_MILLIMETRES * law, color=LAW_COLOUR, linewidth=1.2, label=r"$\alpha F L$")
-    of_theirs = published_volume(published, coefficient, x[x >= 1.0])
-    axes.plot(x[x >= 1.0], CUBIC_MILLIMETRES * of_theirs, label=PUBLISHED_FITS, **PUBLISHED)
+    for load, track in chosen[["load_n", "track_radius_m"]].drop_duplicates().itertuples(index=False):
+        law = law_volume(coefficient, load, track, x)
+        axes.plot(x, CUBIC_MILLIMETRES * law, color=LAW_COLOUR, linewidth=1.2, label=r"$\alpha F L$")
+    if chosen["published_volume_m3"].notna().any():
+        of_theirs = published_volume(fits, coefficient, x[x >= 1.0])
+        axes.plot(x[x >= 1.0], CUBIC_MILLIMETRES * of_theirs, label=PUBLISHED_FITS, **PUBLISHED)
     for (_, scheme), run in chosen.groupby(["run", "scheme"], sort=False):
         for volume, (style, words) in VOLUME_LOOKS.items():
             if volume != "removed" and scheme != "per_triangle":

@@ -53,7 +53,7 @@ def summary(regimes):
 
 
 def test_a_row_is_in_the_group_of_its_convex_run(regimes, summary):
-    """The plain twin goes with its row; continuous rows come first; a plain run without twin has its own, none no one."""
+    """The plain twin goes with its row; continuous rows come first; a plain run alone has its own."""
     table = by_group(summary, regimes)
     assert table["row"].tolist() == ["R1", "R1", "R3", "R3", "R2", "R2"]
     assert table["regime"].tolist() == [CONTINUOUS] * 4 + [DISCONTINUOUS] * 2
