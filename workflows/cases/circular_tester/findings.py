@@ -17,7 +17,8 @@ from bulkwear.workflows.cases.circular_tester.observed import Builder, Evidence,
 from bulkwear.workflows.cases.circular_tester.volume_evidence import ON_VOLUMES
 
 BUILDERS: Mapping[str, Builder] = {**ON_VOLUMES, **ON_FLOW}
-OF_ANY_PATTERN = ("plain_linear", "plain_sizes", "plain_columns", "plain_even", "steady", "mesh_size", "machines")
+OURS = ("machines",)  # claims of no source: how it is simulated
+OF_ANY_PATTERN = ("plain_linear", "plain_sizes", "plain_columns", "plain_even", "steady", "mesh_size", *OURS)
 
 
 def findings_table(seen: Observed, claims: Mapping[str, Claim]) -> pd.DataFrame:
@@ -34,7 +35,8 @@ def verdict_on(key: str, seen: Observed, claim: Claim) -> Verdict:
     """Return the verdict on a claim; of the source's samples nothing can be said by others."""
     evidence = BUILDERS[key](seen, claim)
     words = found_words(evidence, claim.unit)
-    if why := seen.foreign.get(PLAIN if key in OF_ANY_PATTERN else seen.patterned):
+    why = seen.foreign.get(PLAIN if key in OF_ANY_PATTERN else seen.patterned)
+    if why and key not in OURS:
         return not_said(why, words)
     if evidence.reason:
         return not_said(evidence.reason, words)

@@ -5,14 +5,14 @@ A series has one row per instant and measure, see `series_of`; its revolutions a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.readers.cycle_folders import LAYER_TABLE, cycle_files, cycle_folders
-from bulkwear.postproc.readers.solver_log import thermo_table
+from bulkwear.postproc.readers.solver_log import thermo_rows, thermo_table
 from bulkwear.postproc.statistics.steady import FEWEST_VALUES, STEADY, UNSAID, Window, common_start, steady_window
 from bulkwear.workflows.cases.circular_tester.packings import PACKING, over_packings
 from bulkwear.workflows.cases.circular_tester.runs import LOG, TesterRun
@@ -86,9 +86,9 @@ def series_of(run: TesterRun) -> pd.DataFrame:
     each in rows of its own: velocity_m_per_s and bed_height_m of the particles over the sample, wear_rate_m3_per_s,
     normal_force_N, bottom_velocity_m_per_s, SPIN and MEAN_SPIN, see `layer.reduce_layer`.
     """
-    parts = [_logged(run.bed_folder / LOG, run.bed_revolution_steps)]
-    folders = cycle_folders(run.folder)
-    parts.append(_after(_logged(folders[0] / LOG, run.revolution_steps), run.bed_revolutions))
+    run_in, *_ = cycle_folders(run.folder)
+    parts = [_turning(run.bed_folder / LOG, run.bed_revolution_steps)]
+    parts.append(_after(_running_in(run_in / LOG, run.revolution_steps), run.bed_revolutions))
     forces = _rows(run.folder, "forces.csv")
     over = {"velocity_over_m_per_s": "velocity_m_per_s", "height_over_m": "bed_height_m"}
     parts.append(_after(forces.rename(columns=over)[["revolution", *over.values()]], run.before))
@@ -126,17 +126,24 @@ def _after(table: pd.DataFrame, revolutions: float) -> pd.DataFrame:
     return table.assign(revolution=table["revolution"] + revolutions)
 
 
-def _logged(path: Path, revolution_steps: int) -> pd.DataFrame:
-    """Velocity and height of the bed over the sample from the last run of a log, by revolution since its start."""
+def _turning(path: Path, revolution_steps: int) -> pd.DataFrame:
+    """What the bed does over the sample, from the last run of its log, which turns it, by revolution of that run."""
     thermo = thermo_table(path)
     last = thermo["run"] == thermo["run"].max()
-    step = thermo["Step"][last]
-    table = {
-        "revolution": (step - step[0]) / revolution_steps,
-        "velocity_m_per_s": thermo["sample_v"][last],
-        "bed_height_m": thermo["sample_h"][last],
-    }
-    return pd.DataFrame(table).iloc[1:]  # the first row is of no motion yet
+    thermo = {name: values[last] for name, values in thermo.items()}
+    return _over_sample(thermo, thermo["Step"] - thermo["Step"][0], revolution_steps).iloc[1:]  # first: no motion yet
+
+
+def _running_in(path: Path, revolution_steps: int) -> pd.DataFrame:
+    """The same from the log of a run-in, whose steps count from its start on, however many pieces it is of."""
+    thermo = thermo_rows(path)
+    return _over_sample(thermo, thermo["Step"], revolution_steps)
+
+
+def _over_sample(thermo: Mapping[str, np.ndarray], step: np.ndarray, revolution_steps: int) -> pd.DataFrame:
+    """Velocity and height of the bed over the sample, by revolution."""
+    columns = {"velocity_m_per_s": thermo["sample_v"], "bed_height_m": thermo["sample_h"]}
+    return pd.DataFrame({"revolution": step / revolution_steps, **columns})
 
 
 def _rows(folder: Path, name: str) -> pd.DataFrame:

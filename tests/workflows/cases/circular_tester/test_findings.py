@@ -9,7 +9,7 @@ import pytest
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.statistics.verdicts import AGREES, CONTRADICTS, OTHER_SIZE, UNSAID, VERDICTS
 from bulkwear.workflows.cases.circular_tester.comparison import ratios_by_revolution
-from bulkwear.workflows.cases.circular_tester.findings import BUILDERS, OF_ANY_PATTERN, findings_table, verdict_on
+from bulkwear.workflows.cases.circular_tester.findings import BUILDERS, OF_ANY_PATTERN, OURS, findings_table, verdict_on
 from bulkwear.workflows.cases.circular_tester.flow import revolution_means
 from bulkwear.workflows.cases.circular_tester.observed import Observed
 from bulkwear.workflows.cases.circular_tester.volume import element_increments
@@ -263,7 +263,9 @@ def test_another_machine_says_nothing_of_the_sources(theirs):
     """Then what is found of its plain sample judges no claim either, and is told."""
     why = "found with tester.depth_mm 60, the source's is 90"
     found, own = verdicts(replace(theirs, foreign=dict.fromkeys(("plain", "convex"), why))), verdicts(theirs)
-    assert set(found["verdict"]) == {UNSAID} and set(found["reason"]) == {why}
+    of_source = found.drop(index=list(OURS))
+    assert set(of_source["verdict"]) == {UNSAID} and set(of_source["reason"]) == {why}
+    assert found.loc[list(OURS), "verdict"].tolist() == own.loc[list(OURS), "verdict"].tolist()
     assert found["found"].tolist() == own["found"].tolist()
 
 

@@ -1,11 +1,14 @@
 """Steadiness and flow of the circular wear tester per revolution."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from bulkwear.postproc.statistics.steady import DRIFTING, STEADY
 from bulkwear.workflows.cases.circular_tester.flow import (
+    LOG,
     MEAN_SPIN,
     SPIN,
     STEADINESS,
@@ -13,6 +16,7 @@ from bulkwear.workflows.cases.circular_tester.flow import (
     revolution_means,
     revolution_numbers,
     revolutions_over_packings,
+    series_of,
     steady_revolutions,
 )
 from tests.support import tester_study as study
@@ -73,6 +77,37 @@ def test_means_over_packings():
     assert (two["mean"] / one["mean"]).to_numpy() == pytest.approx(np.full(len(one), 1.005))
     assert one["interval_low"].isna().all() and (two["interval_low"] < two["mean"]).all()
     assert (two["packings"] == 2).all()
+
+
+def written_log(path, *pieces):
+    """A log of runs of the solver, each from its set-up row on: (first step, steps after it)."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    lines = []
+    for first, steps in pieces:
+        lines += ["Step sample_v sample_h", *(f"{step} 0.{step} 0.1" for step in (first, *steps)), "Loop time of 1"]
+    path.write_text("\n".join(lines) + "\n")
+
+
+@pytest.mark.parametrize("pieces", [[(0, (50, 100, 150, 200))], [(0, (50, 100)), (100, ()), (100, (150, 200))]])
+def test_a_run_in_of_several_pieces_is_there_from_its_start(tmp_path, pieces):
+    """After two revolutions of the bed, half a revolution each row, whether the solver went through or began again."""
+    run = SimpleNamespace(folder=tmp_path / "plain", bed_folder=tmp_path / "bed", name="plain", surface="plain")
+    run.packing, run.revolution_steps, run.bed_revolution_steps, run.revolution_s = 1, 100, 100, 1.0
+    run.bed_revolutions, run.before = 2.0, 4.0
+    written_log(run.bed_folder / LOG, (0, (300,)), (300, (400, 500)))
+    written_log(run.folder / "cycle_000" / LOG, *pieces)
+    cycle = run.folder / "cycle_001"
+    cycle.mkdir()
+    row = {"revolution": [0.5], "velocity_over_m_per_s": 0.4, "height_over_m": 0.1}
+    pd.DataFrame(row).to_csv(cycle / "forces.csv", index=False)
+    row = {"time_s": [1.0], "worn_volume_m3": 1e-9, "mean_normal_force_N": 1.0}
+    pd.DataFrame(row).to_csv(cycle / "wear_history.csv", index=False)
+    row = {"revolution": [0.5], "velocity_m_per_s": 0.4}
+    spins = {"averaged_angular_velocity_rad_per_s": 1.0, "mean_angular_speed_rad_per_s": 1.0}
+    pd.DataFrame(row | spins).to_csv(cycle / "lowest_layer.csv", index=False)
+    table = series_of(run).dropna(subset="velocity_m_per_s")
+    assert table["revolution"].tolist() == [1.0, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5]
+    assert table["velocity_m_per_s"].tolist() == [0.4, 0.5, 0.5, 0.1, 0.15, 0.2, 0.4]
 
 
 def test_tables_of_the_layer_that_averaged_otherwise_are_refused(tmp_path):
