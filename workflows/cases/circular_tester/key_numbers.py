@@ -337,12 +337,9 @@ def by_column(folder: Path) -> list[Block]:
 
 def until_worn_out(folder: Path, thickness_mm: float) -> list[Block]:
     """Return when less than a twentieth of the pattern is left, run by run, and from when on a sample is worn deeper
-    than it is thick; nothing where no row is for that. thickness_mm: of sample and holder
+    than it is thick, of a study with rows for that. thickness_mm: of sample and holder
     """
-    path = folder / "figures" / "tester_worn_out.csv"
-    if not path.is_file():
-        return []
-    left = pd.read_csv(path)
+    left = pd.read_csv(folder / "figures" / "tester_worn_out.csv")
     histories = {run: pd.read_csv(folder / run / "wear.csv") for run in left["run"].unique()}
     said = [deeper_than_sample(left[left["run"] == run], history, thickness_mm) for run, history in histories.items()]
     return [Table(worn_out_at(left)), *(Text(each) for each in said if each)]
@@ -365,7 +362,6 @@ def deeper_than_sample(left: pd.DataFrame, history: pd.DataFrame, thickness_mm: 
 
 
 def by_elements(folder: Path) -> list[Block]:
-    """Return what the size of elements changes; nothing where no row is for that."""
-    path = folder / "figures" / "tester_mesh.csv"
+    """Return what the size of elements changes, of a study with rows for that."""
     heads = {LOW: ("interval from", "%"), HIGH: ("to", "%")}
-    return [Table(pd.read_csv(path), note=INTERVALS, heads=heads)] if path.is_file() else []
+    return [Table(pd.read_csv(folder / "figures" / "tester_mesh.csv"), note=INTERVALS, heads=heads)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +11,7 @@ from bulkwear.workflows.cases.circular_tester import key_numbers
 from bulkwear.workflows.cases.circular_tester.beds import NOTE
 from bulkwear.workflows.cases.circular_tester.runs import has_pairs
 from bulkwear.workflows.cases.circular_tester.sensitivity_figures import EFFECTS, NUMBERS, SENSITIVITY, SETTINGS_SAID
-from bulkwear.workflows.cases.circular_tester.source import unlike_source
+from bulkwear.workflows.cases.circular_tester.source import material_coefficient, unlike_source
 from bulkwear.workflows.report.beds import blocks_of_beds
 from bulkwear.workflows.report.sections import Block, Pictures, Points, Section, Table, Text
 from bulkwear.workflows.report.sentences import friction_between
@@ -36,6 +36,8 @@ EFFECTS_NOTE = (
     "Factor: by which a change multiplies a number, least squares of the logarithm over all settings; interval: 95 %, "
     "from how far the settings are off a product of such factors, packings included."
 )
+FAR_ABOVE = 10.0  # -, of wear coefficients: a revolution then stands for ten and more
+STEEL = "steel"  # wall whose contact the source's model has
 UNPAIRED = "No packing of these rows has a plain and a patterned run of series volume: nothing is compared."
 DECKS = (  # {bed} and {run} are those of the first run
     ("Filling the trough and turning it until the flow is steady", "beds/{bed}/deck.in"),
@@ -70,7 +72,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     columns = ("tester_columns", "tester_bumps", "tester_contours", "tester_force_columns")
     places = (*columns, "wear_by_law", "maps_by_law")
     layer = ("tester_spin", "tester_velocity", "tester_force", "tester_spin_map", "tester_velocity_map")
-    thickness_mm = study["settings"]["sample"]["thickness_mm"]
+    thickness_mm, figures = study["settings"]["sample"]["thickness_mm"], study["figures"]
     parts = (
         (
             "Experiment, thesis' model and ours",
@@ -86,13 +88,17 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
         ("Where it wears", key_numbers.by_column(folder), places),
         (
             "Until the pattern is gone",
-            key_numbers.until_worn_out(folder, thickness_mm),
+            key_numbers.until_worn_out(folder, thickness_mm) if "tester_worn_out" in figures else [],
             ("tester_worn_out",),
         ),
         ("The lowest layer", [], layer),
-        ("Elements", key_numbers.by_elements(folder), ("tester_mesh", "tester_mesh_contours")),
+        (
+            "Elements",
+            key_numbers.by_elements(folder) if "tester_mesh" in figures else [],
+            ("tester_mesh", "tester_mesh_contours"),
+        ),
     )
-    if (folder / SENSITIVITY).is_file():
+    if "tester_sensitivity" in figures:
         parts = (("What the source does not tell", what_is_open(folder), ("tester_sensitivity",)), *parts)
     return [Section(title, [*blocks, Pictures(pictures)]) for title, blocks, pictures in parts]
 
@@ -129,7 +135,9 @@ def remarks(study: Study) -> list[str]:
         said.append(f"elements of {size:g} mm instead of {whole:g} mm")
     wear = runs[0].parameters["wear"] | study.settings["wear"]
     coefficient = wear["wear_coefficient_per_pa"] * wear["acceleration"]
-    said.append(f"wear coefficient {coefficient:g} 1/Pa, far above the material's: a revolution stands for many hours")
+    accelerated = coefficient > FAR_ABOVE * material_coefficient()
+    far = ", far above the material's: a revolution stands for many hours" if accelerated else ""
+    said.append(f"wear coefficient {coefficient:g} 1/Pa{far}")
     return [*said, *dict.fromkeys(unlike_source(study).values())]
 
 
@@ -155,7 +163,7 @@ def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:
 def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return (what, how) of what is simpler here than on the machine, besides scale, wear and comparison."""
     settings, runs = study["settings"], list(study["parameters"].values())
-    tester, sliding = settings["tester"], settings["sliding"]
+    sliding, solver = settings["sliding"], [run["solver"]["rolling_friction"] for run in runs]
     diameters = [1e3 * diameter for run in runs for diameter in run["particle"]["diameters_m"]]
     ratios = [ratio for run in runs if (ratio := run["derived"]["equivalent_size_ratio"]) is not None]
     helps = "the source finds that a pattern helps below 1"
@@ -164,7 +172,7 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         (
             "Coarse-grained particles",
             f"Spheres of {min(diameters):.3g} to {max(diameters):.3g} mm. Shape that is not round is represented by "
-            f"rolling friction ({settings['solver']['rolling_friction']}) alone. "
+            f"rolling friction ({_listed(solver)}) alone. "
             f"{friction_between([run['particle'] for run in runs])}{over_bump}",
         ),
         (
@@ -174,10 +182,9 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         ),
         (
             "Not published",
-            f"Height of the bed over the floor ({tester['bed_height_mm']:g} mm), thickness of sample and holder "
-            f"({settings['sample']['thickness_mm']:g} mm) and the consolidator's dimensions are assumptions. What "
-            "holds the sample is left out. The sample's contact with particles is that of steel, as in the model that "
-            "chapter 6 refers to.",
+            f"Height of the bed over the floor ({_millimetres(runs, 'tester', 'bed_height_m')}), thickness of sample "
+            f"and holder ({_millimetres(runs, 'sample', 'thickness_m')}) and the consolidator's dimensions are "
+            f"assumptions. What holds the sample is left out. {_contact_words(runs)}",
         ),
         (
             "Wear cycle by cycle",
@@ -190,6 +197,26 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
             "each counts as one value, however long it is. Of one packing the scatter is unknown.",
         ),
     ]
+
+
+def _listed(words: Iterable[str]) -> str:
+    return " or ".join(dict.fromkeys(words))
+
+
+def _millimetres(runs: list[Mapping[str, Any]], section: str, key: str) -> str:
+    """Return all that a length is in some runs."""
+    return f"{_listed(f'{each:g}' for each in sorted({1e3 * run[section][key] for run in runs}))} mm"
+
+
+def _contact_words(runs: list[Mapping[str, Any]]) -> str:
+    """Return what the contact of samples with particles is: the floor's, or their own friction."""
+    said = []
+    for sample, floor in ((run["sample_material"], run["floor_material"]) for run in runs):
+        own, as_floor = sample["contact"], sample["contact"] == floor["contact"]
+        model = ", as in the model that chapter 6 refers to" if floor["name"] == STEEL else ""
+        friction = f"sliding friction {own['sliding_friction']:g}, rolling friction {own['rolling_friction']:g}"
+        said.append(f"that of {floor['name']}{model}" if as_floor else f"that of {sample['name']} ({friction})")
+    return f"The sample's contact with particles is {', or '.join(dict.fromkeys(said))}."
 
 
 def _inside_outside(runs: list[Mapping[str, Any]]) -> str:

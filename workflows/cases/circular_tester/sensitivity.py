@@ -22,15 +22,25 @@ if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
 
 REFERENCE = "reference"  # the pair of series `volume`
-FACTORS = {  # what may be varied: (section, key) of the parameters, and what a value is multiplied by
+# What may be varied: path in the parameters, and what a value is multiplied by. The consolidator's level is the bed's.
+FACTORS = {
     "friction of the sample": (("sample_material", "contact", "sliding_friction"), 1.0),
+    "rolling friction of the sample": (("sample_material", "contact", "rolling_friction"), 1.0),
     "rolling model": (("solver", "rolling_friction"), None),
     "height of the bed, mm": (("tester", "bed_height_m"), 1e3),
     "depth of the sample, mm": (("tester", "depth_m"), 1e3),
     "thickness of the sample, mm": (("sample", "thickness_m"), 1e3),
     "tilt of the sample, degrees": (("tester", "incline_rad"), 180.0 / np.pi),
     "particle scale": (("particle", "scale"), 1.0),
+    "shape of the machine": (("tester", "shape"), None),
+    "size of elements, mm": (("sample", "element_size_m"), 1e3),
+    "wear coefficient, 1/Pa": (("wear", "accelerated_wear_coefficient_per_pa"), 1.0),
+    "patch radius, mm": (("wear", "patch_radius_m"), 1e3),
+    "largest step of an update, edges": (("wear", "largest_step_edge_fraction"), 1.0),
+    "revolutions": (("sliding", "revolutions"), 1.0),
+    "wear cycles per revolution": (("sliding", "cycles_per_revolution"), 1.0),
 }
+NO_VALUE = "none"  # of a setting that a run does not use
 
 
 def settings_of_pairs(study: Study) -> dict[str, dict[str, str]]:
@@ -49,7 +59,9 @@ def settings_of_pairs(study: Study) -> dict[str, dict[str, str]]:
 def _told(parameters: Mapping[str, Any], path: Sequence[str], factor: float | None) -> str:
     value: Any = parameters
     for key in path:
-        value = value[key]
+        value = value.get(key, {})
+    if value == {}:
+        return NO_VALUE
     return str(value) if factor is None else f"{factor * value:.4g}"
 
 
@@ -263,6 +275,7 @@ def words_of(changes: Mapping[str, str]) -> str:
 def change_words(factor: str, value: str) -> str:
     """Return a factor and its value in words, its unit last."""
     name, _, unit = factor.partition(", ")
+    unit = "" if value == NO_VALUE else unit
     return " ".join(filter(None, (name, value, unit)))
 
 

@@ -6,6 +6,7 @@ bed, thickness; so may what a fidelity reduces: particle scale, elements, the ch
 
 from __future__ import annotations
 
+import csv
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
@@ -23,7 +24,9 @@ if TYPE_CHECKING:
 
 SETTINGS = PACKAGE / "config" / "cases" / "circular_tester.yaml"  # numbers are the source's
 MATERIALS, GRAVEL = PACKAGE / "config" / "materials.yaml", "river_gravel_published"
+PUBLISHED = PACKAGE / "config" / "published" / "circular_tester.csv"
 CONVEX = "convex"  # the source's pattern
+SECONDS_PER_HOUR = 3600.0
 MACHINE = (
     *(("sample", key) for key in ("width_mm", "length_mm")),
     *(("tester", key) for key in ("inner_radius_mm", "outer_radius_mm", "depth_mm", "incline_deg")),
@@ -84,6 +87,17 @@ def _said(name: str, value: float | str) -> str:
 
 def _alike(own: float, theirs: float) -> bool:
     return math.isclose(own, theirs, rel_tol=ROUNDING, abs_tol=ROUNDING)
+
+
+@cache
+def material_coefficient() -> float:
+    """Return the wear coefficient (1/Pa) of the source's plain sample in its own test, by pressure and distance."""
+    with open(PUBLISHED, encoding="utf-8", newline="") as stream:
+        found = {row["quantity"]: float(row["value"]) for row in csv.DictReader(stream) if row["of"] == "laboratory"}
+    sample = _source()[0]["sample"]
+    load = 1e3 * found["normal_pressure"] * 1e-6 * sample["width_mm"] * sample["length_mm"]
+    distance = found["velocity_at_centre"] * found["short_test"] * SECONDS_PER_HOUR
+    return 1e-9 * found["plain_volume_56_h"] / (load * distance)
 
 
 @cache

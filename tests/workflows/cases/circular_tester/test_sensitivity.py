@@ -1,6 +1,7 @@
 """What the source does not tell of its tester: settings, numbers reached, effects of changes, figure, sentences."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from bulkwear.postproc.statistics.verdicts import AGREES, CONTRADICTS, UNSAID
 from bulkwear.workflows.cases.circular_tester.page import published_numbers
 from bulkwear.workflows.cases.circular_tester.plots.sensitivity import reached_by_setting
+from bulkwear.workflows.cases.circular_tester.sensitivity import FACTORS as VARIABLE
 from bulkwear.workflows.cases.circular_tester.sensitivity import (
     REFERENCE,
     changes_of,
@@ -16,10 +18,13 @@ from bulkwear.workflows.cases.circular_tester.sensitivity import (
     sensitivity_table,
     sentences,
     settings_of_pairs,
+    words_of,
 )
 from bulkwear.workflows.cases.circular_tester.sensitivity_figures import CLAIMS_PART, NUMBERS
 from bulkwear.workflows.config.claims import claims_of
 from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.config.schema import load_schema
+from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.report.published import published_numbers as collected
 from bulkwear.workflows.report.sections import Section
@@ -53,6 +58,38 @@ def test_each_thing_is_changed_alone_and_with_two_others(settings):
     names = sorted({name for each in changes.values() for name in each})
     signs = np.array([[1 if name in each else -1 for name in names] for pair, each in changes.items() if each])
     assert (signs.T @ signs == 8 * np.eye(4)).all()
+
+
+NOT_VARIED = {"surface", "seed", "packings", "consolidator_level_mm"}  # the level is that of the bed
+ELSEWHERE = {  # settings whose value stands elsewhere among the parameters
+    "sample.material": ("sample_material",),
+    "particle_scale": ("particle", "scale"),
+    "wear.wear_coefficient_per_pa": ("wear", "accelerated_wear_coefficient_per_pa"),
+}
+
+
+def test_every_column_that_a_row_may_vary_has_a_name():
+    """None passes as the reference: each setting that a column of the design replaces is among what is told."""
+    columns = load_schema("cases/circular_tester/design")["properties"]
+    named = [(name, column["x-setting"]) for name, column in columns.items() if "x-setting" in column]
+    told = [path for path, _ in VARIABLE.values()]
+    for _, setting in (each for each in named if each[0] not in NOT_VARIED):
+        section, _, key = setting.rpartition(".")
+        path = ELSEWHERE.get(setting) or (section, next(iter(to_si({key: 0.0}))))
+        assert any(each[: len(path)] == path for each in told), setting
+
+
+def test_a_pair_in_another_machine_is_no_reference():
+    """A ring, contacts that wear over single elements, another coefficient: each is told beside the bed."""
+    study = load_study("tester_sensitivity", overrides={"fidelity": "quick", "packings": 1})
+    bed = next(run for run in study.runs if run.row == "bed-plain")
+    ring = {**bed.parameters, "tester": {**bed.parameters["tester"], "shape": "ring"}}
+    wear = {key: value for key, value in bed.parameters["wear"].items() if key != "patch_radius_m"}
+    ring["wear"] = {**wear, "accelerated_wear_coefficient_per_pa": 1e-8}
+    runs = [SimpleNamespace(row=run.row, parameters=ring if run is bed else run.parameters) for run in study.runs]
+    changes = changes_of(settings_of_pairs(SimpleNamespace(design_rows=study.design_rows, runs=runs)))
+    said = "height of the bed 190 mm, shape of the machine ring, wear coefficient 1e-08 1/Pa, patch radius none"
+    assert words_of(changes["bed"]) == said and words_of(changes[REFERENCE]) == REFERENCE
 
 
 def test_what_a_change_does_comes_back(table, settings):
