@@ -240,11 +240,12 @@ def remarks(runs: pd.DataFrame, table: pd.DataFrame) -> list[str]:
     packings = table.set_index("candidate")["packings"]
     others = packings.drop(REFERENCE)
     return [
-        "runs of the study particle_size at quick fidelity, one thing changed at a time: particles at scale"
+        "runs of the study particle_size at quick fidelity with the source's pair of frictions, one thing changed at a"
+        " time: particles at scale"
         f" {', '.join(f'{scale:g}' for scale in runs['particle_scale'].unique())}, wear over 800 mm of travel after"
         " 500 mm",
         "green line: the source's lines, whose reading of the pattern and whose code are not known",
-        f"at most {packings[REFERENCE].max()} packings of the study's runs, {others.max() if len(others) else 0} of the"
+        f"at most {packings[REFERENCE].max()} packings of {REFERENCE}, {others.max() if len(others) else 0} of the"
         " others;"
         + (
             f" bars: {PERCENT * LEVEL:g} % intervals, {ASSUMED} candidates; without a bar: {UNKNOWN}"

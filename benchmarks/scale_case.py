@@ -1,5 +1,5 @@
 """The runs that tell what moves the wear of a convex sample in coarse particles: a row of `particle_size`, convex and
-plain, as the study has it and with one thing changed.
+plain, as the study has it but for the source's pair of frictions, and with one thing changed.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from bulkwear.workflows.engine.derived import WALLS
 
 STUDY, SURFACES = "particle_size", (PLAIN, "convex")
 SETTINGS: dict[str, Any] = {"fidelity": "quick", "bed": {"material": PUBLISHED_PAIR}}
-REFERENCE = "as in the study"
+REFERENCE = "the study with the source's pair"
+FOLDER_OF_REFERENCE = "as_in_the_study"  # of its runs
 OPEN, PUBLISHED, NUMERICAL = "open", "published", "ours"  # what the source says of a thing
 SIZES = "relative_diameters"  # key of a change; over the median
 
@@ -39,7 +40,9 @@ def _of_sample(**contact: float) -> dict[str, Any]:
 
 
 CANDIDATES: dict[str, Candidate] = {
-    REFERENCE: Candidate({}, "", "row of the study at quick fidelity, with the source's pair of frictions"),
+    REFERENCE: Candidate(
+        {}, "", "row of the study at quick fidelity, with the pair of frictions that the source gives"
+    ),
     "one size of particles": Candidate(
         {"particle": {SIZES: [1.0], "mass_fractions": [1.0]}},
         OPEN,
@@ -141,7 +144,8 @@ class Case:
     def folder(self) -> str:
         """Path of its folder within that of all."""
         same = self.surface == PLAIN and set(CANDIDATES[self.candidate].change) == {"pattern"}
-        name = (REFERENCE if same else self.candidate).replace(" ", "_")
+        reference = same or self.candidate == REFERENCE
+        name = FOLDER_OF_REFERENCE if reference else self.candidate.replace(" ", "_")
         return f"scale_{self.scale}/{name}/{self.surface}/{self.seed}"
 
 

@@ -72,7 +72,7 @@ def conclusion(rows: pd.DataFrame) -> str:
     scale, others = rows["particle_scale"].iloc[0], rows[rows["candidate"] != REFERENCE]
     reference, source = rows[rows["candidate"] == REFERENCE].iloc[0], source_ratio(scale)
     head = (
-        f"Particle scale {scale:g}: the study has {reference['wear_over_plain']:.2f}, the source's lines"
+        f"Particle scale {scale:g}: {REFERENCE} has {reference['wear_over_plain']:.2f}, the source's lines"
         f" {source:.2f}, {source / reference['wear_over_plain']:.1f} times as much. With base and plain sample as they"
         f" are here, the bumps would have to wear {needed_factor(reference, scale):.1f} times as much."
     )
@@ -83,7 +83,7 @@ def conclusion(rows: pd.DataFrame) -> str:
     reach = [row.candidate for row in ranked.itertuples() if row.ratio_high >= source]
     sure = [row.candidate for row in ranked.itertuples() if row.wear_over_plain >= source]
     return (
-        f"{head} Over the study's ratio, largest first: {', '.join(moved)}. The source's ratio is reached by"
+        f"{head} Over that ratio, largest first: {', '.join(moved)}. The source's ratio is reached by"
         f" {', '.join(sure) or 'none of them'}, and lies in or below the interval of {', '.join(reach) or 'none'}."
     )
 
@@ -154,7 +154,7 @@ def results_page(table: pd.DataFrame, critical: pd.DataFrame, runs: pd.DataFrame
             " plain. Slip: sliding work per metre over the mean normal force, which is the velocity at the contacts"
             " over the sample's, in %: no change of the flow can raise it above 100 %. Velocity: of the particles over"
             " the sample, in % of the sample's; the source has 40 to 45 % (convex) and 10 to 15 % (plain)."
-            " Processor: the solver's processor time over that of the study's own rows; machines are never quite idle."
+            f" Processor: the solver's processor time over that of {REFERENCE}; machines are never quite idle."
         ),
         markdown(table[[*names, *parts_of]]),
         *critical_part(critical),

@@ -141,7 +141,7 @@ def test_page_and_figure(tmp_path, monkeypatch):
     assert table["ratio_low"].isna().all()
     assert f"reached by {OTHER}" in conclusion(table)
     said = " ".join(remarks(single, table))
-    assert "at most 1 packings of the study's runs" in said and "not known" in said
+    assert "at most 1 packings of the study with the source's pair" in said and "not known" in said
     assert "not known" in scale_page.scatter_words(table) and "bumps turned" not in page
 
 
