@@ -189,7 +189,8 @@ def ratio_by_candidate(table: pd.DataFrame, source: Mapping[int, float], remarks
     for axes, scale in zip(panels, scales, strict=True):
         rows = table[table["particle_scale"] == scale]
         axes.axvline(1.0, color="#a0a0a0", linewidth=0.8)
-        axes.axvline(rows["wear_over_plain"].iloc[0], color="black", linewidth=0.8, linestyle=":", label="as the first line")
+        first = rows["wear_over_plain"].iloc[0]
+        axes.axvline(first, color="black", linewidth=0.8, linestyle=":", label="as the first line")
         axes.axvline(source[scale], color=SOURCE_COLOUR, linewidth=1.4, linestyle="--", label="Yan 2022, Eq 4.14, 4.15")
         for kind, (words, shade, marker) in KINDS.items():
             some = rows[rows["kind"] == kind]
