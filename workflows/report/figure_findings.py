@@ -71,8 +71,16 @@ def largest_step(updates: pd.DataFrame) -> str:
     capped = updates[updates["step_taken"] >= 1.0]
     if capped.empty:
         return "No update reaches a cap on its step: all wear is applied at once."
-    share = PERCENT * len(capped) / len(updates)
-    return f"In {share:.0f} % of the updates a cap on a step is reached, and wear is carried on to the next."
+    share = _share_of(len(capped), len(updates))
+    return f"In {share} of the updates a cap on a step is reached, and wear is carried on to the next."
+
+
+def _share_of(count: int, whole: int) -> str:
+    """Return a count over the whole in %; neither nothing nor all where it is not."""
+    percent = PERCENT * count / whole
+    if 0 < count < whole and not 1.0 <= percent <= PERCENT - 1.0:
+        return "less than 1 %" if percent < 1.0 else f"more than {PERCENT - 1.0:.0f} %"
+    return f"{percent:.0f} %"
 
 
 def laws_apart(laws: pd.DataFrame) -> str:

@@ -85,5 +85,6 @@ def prediction_note(rows: Sequence[Foreseen], error: float) -> str:
     else:
         said = [f"Interval: 95 %, of the packings alone, as no {COEFFICIENT_ERROR} is given."]
     if any(row.found.packings < 2 for row in rows):
-        said.append(f"{UNKNOWN.capitalize()}: the coefficient's part alone.")
+        alone = "the coefficient's part alone" if error > 0.0 else "no interval"
+        said.append(f"{UNKNOWN.capitalize()}: {alone}.")
     return " ".join([*said, "A shape that wears changes its own rate; that is not in it."])

@@ -33,11 +33,15 @@ def published_file(page: str) -> str:
 
 
 def write_published_numbers(docs: Path, page: str, sections: Iterable[Section]) -> None:
-    """Leave the published numbers of a page of results in docs; nothing for a page without any."""
+    """Leave the published numbers of a page of results in docs; nothing, not even an earlier table, for a page without
+    any.
+    """
     table, path = published_numbers(sections), docs / published_file(page)
     if len(table):
         path.parent.mkdir(exist_ok=True)
         table.to_csv(path, index=False, float_format="%.4g")
+    else:
+        path.unlink(missing_ok=True)
 
 
 def published_numbers(sections: Iterable[Section]) -> pd.DataFrame:

@@ -21,6 +21,7 @@ TITLE = "Verdict"
 LEAST_CARRIED, MUCH_CARRIED = 0.01, 0.1  # -, of the worn volume: less changes no digit; more is another shape
 ENOUGH_PACKINGS = 3  # from which on an interval tells something
 UNEVEN = 0.01  # -, of a distance between cycles: more is no series for `steady_window`
+UNEVEN_CYCLES = "cannot be said of uneven cycles"  # an answer beside those of `statistics.steady`
 PERCENT = 100.0
 MOST_SAID, FEWEST_FOLDED = 8, 3  # sentences that stand open: more hide the answer; fewer are not worth folding
 MOST_NAMED = 5  # settings of the design that were not run
@@ -79,15 +80,19 @@ def left_out_words(settings: Sequence[str]) -> list[str]:
 
 
 def steadiness(study: Mapping[str, Any], folder: Path) -> list[str]:
-    """Return of each run whether its wear per metre is steady over the cycles; UNSAID where it has no wear.csv."""
+    """Return of each run whether its wear per metre is steady over the cycles; UNSAID where it has no wear.csv, or too
+    few cycles, UNEVEN_CYCLES where these are not equally long.
+    """
     paths = [folder / run / "wear.csv" for run in study["runs"]]
     return [_steady(pd.read_csv(path)) if path.is_file() else UNSAID for path in paths]
 
 
 def _steady(wear: pd.DataFrame) -> str:
     distances = np.diff(wear["travel_m"], prepend=0.0)
-    if len(wear) < FEWEST_VALUES or np.ptp(distances) > UNEVEN * distances.max():
+    if len(wear) < FEWEST_VALUES:
         return UNSAID
+    if np.ptp(distances) > UNEVEN * distances.max():
+        return UNEVEN_CYCLES
     return steady_window(wear["travel_m"].to_numpy(), (wear["worn_volume_m3"] / distances).to_numpy()).answer
 
 
@@ -99,13 +104,20 @@ def _judged_steady(page: Any, study: Mapping[str, Any], folder: Path) -> tuple[l
 
 
 def steady_light(answers: Sequence[str], of: str = "") -> Light:
-    """Return whether runs are steady, from an answer of `statistics.steady` per run; of: what of them, in words."""
+    """Return whether runs are steady, from an answer of `statistics.steady`, or UNEVEN_CYCLES, per run; of: what of
+    them, in words.
+    """
     counts, runs = Counter(answers), len(answers)
     if counts[STEADY] == runs:
         return Light("Steady", SOUND, f"All runs are{of}.")
     if counts[DRIFTING]:
         return Light("Steady", WEAK, f"{counts[DRIFTING]} of {runs} runs still change: longer ones would tell more.")
-    return Light("Steady", CARE, f"Of {counts[UNSAID]} of {runs} runs it cannot be said: they are too short.")
+    why = {UNSAID: "too short", UNEVEN_CYCLES: "of wear cycles of unequal travel"}
+    told = {answer: f"they are {words}" for answer, words in why.items() if counts[answer]}
+    if len(told) > 1:
+        told = {answer: f"{counts[answer]} {why[answer]}" for answer in told}
+    unsaid = sum(counts[answer] for answer in told)
+    return Light("Steady", CARE, f"Of {unsaid} of {runs} runs it cannot be said: {', '.join(told.values())}.")
 
 
 def cap_light(study: Mapping[str, Any], summary: pd.DataFrame) -> Light:

@@ -37,9 +37,12 @@ def test_last_cycles_count():
 
 
 def test_updates_at_a_cap_are_counted():
-    """Half of the steps reach their cap; where none does it is said."""
+    """Half of the steps reach their cap; where none does it is said; one of many is not none, all but one not all."""
     assert "In 50 %" in findings.largest_step(pd.DataFrame({"step_taken": [1.0, 0.2]}))
     assert findings.largest_step(pd.DataFrame({"step_taken": [0.2]})).startswith("No update")
+    for ends, share in (([1.0, 0.2], "less than 1 %"), ([0.2, 1.0], "more than 99 %"), ([1.0, 1.0], "100 %")):
+        steps = pd.DataFrame({"step_taken": [ends[0], *[ends[1]] * 399]})
+        assert findings.largest_step(steps).startswith(f"In {share} of the updates")
 
 
 def test_share_of_the_pattern():

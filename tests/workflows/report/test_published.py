@@ -136,6 +136,13 @@ def test_the_page_has_the_numbers_of_every_page_that_left_some(tmp_path):
     assert "b results" not in page
 
 
+def test_a_page_without_published_numbers_leaves_none_of_an_earlier_one(tmp_path):
+    """The table that it once left is removed; a page that never had one changes nothing."""
+    for sections, there in (([section(CLAIM)], True), ([], False), ([], False)):
+        write_published_numbers(tmp_path, "a_results_quick.md", sections)
+        assert (tmp_path / published_file("a_results_quick.md")).is_file() == there
+
+
 def test_the_page_in_docs_is_that_of_its_tables():
     """Tables, the list of pages and the page of all numbers were committed together."""
     from bulkwear.workflows.report.provenance_of_pages import read_origins

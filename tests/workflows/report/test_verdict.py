@@ -61,4 +61,9 @@ def test_wear_per_metre_tells_whether_a_run_is_steady():
     assert verdict._steady(even) == STEADY
     assert verdict._steady(even.assign(worn_volume_m3=1e-9 * (1.0 + cycles / len(cycles)))) == DRIFTING
     assert verdict._steady(even.head(FEWEST_VALUES - 1)) == UNSAID
-    assert verdict._steady(even.assign(travel_m=0.1 * cycles**1.1)) == UNSAID
+    uneven = verdict._steady(even.assign(travel_m=0.1 * cycles**1.1))
+    assert uneven == verdict.UNEVEN_CYCLES
+    said = [verdict.steady_light(answers).said for answers in ([UNSAID, STEADY], [uneven], [uneven, uneven, UNSAID])]
+    assert said[0] == "Of 1 of 2 runs it cannot be said: they are too short."
+    assert said[1] == "Of 1 of 1 runs it cannot be said: they are of wear cycles of unequal travel."
+    assert said[2] == "Of 3 of 3 runs it cannot be said: 1 too short, 2 of wear cycles of unequal travel."

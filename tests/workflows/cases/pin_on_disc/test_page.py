@@ -67,6 +67,8 @@ def test_predictions_have_the_error_of_the_coefficient(summarised):
     np.testing.assert_allclose(table["coefficient_low"] / table["value"], 0.84, rtol=RELATIVE)
     np.testing.assert_allclose(table["coefficient_high"] / table["value"], 1.16, rtol=RELATIVE)
     assert "One packing, scatter unknown: the coefficient's part alone." in prediction_note(rows, 0.16)
+    assert "coefficient's part" not in prediction_note(rows, 0.0)
+    assert "One packing, scatter unknown: no interval." in prediction_note(rows, 0.0)
 
 
 def test_a_scheme_without_runs_has_no_card(summarised):
