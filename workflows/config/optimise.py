@@ -115,7 +115,7 @@ def fault_of_search(asked: Optimise, settings: Mapping[str, Any], head: Mapping[
         return f"{OPTIMISE} looks for least wear over plain, allowed is a study with surfaces of a pattern and {PLAIN}"
     if twice := next((name for name in asked.names if asked.names.count(name) > 1), None):
         return f"{OPTIMISE}.factors has {twice} twice, allowed is each factor once"
-    if wrong := next((each for each in asked.factors if not each.low + each.step <= each.high), None):
+    if wrong := next((each for each in asked.factors if each.steps < 1), None):
         return f"{OPTIMISE}.factors has {wrong.name} from {wrong.low:g} to {wrong.high:g}, allowed is a step or more"
     if asked.most_rows < (least := asked.first_rows + asked.rows_of_round + 1):
         return f"{OPTIMISE}.most_rows is {asked.most_rows}, allowed are {least} or more: first rows, a round, the best"

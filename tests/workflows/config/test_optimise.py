@@ -6,7 +6,13 @@ import pytest
 
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.layers import Layer
-from bulkwear.workflows.config.optimise import NO_PROPOSAL_CHANGES, fault_of, found_rows
+from bulkwear.workflows.config.optimise import (
+    NO_PROPOSAL_CHANGES,
+    fault_of,
+    fault_of_search,
+    found_rows,
+    optimise_of,
+)
 from bulkwear.workflows.config.rounds import after_round
 from bulkwear.workflows.engine.inputs import run_digest
 from bulkwear.workflows.engine.project import Project
@@ -56,6 +62,22 @@ def test_a_search_adds_its_rows_behind_the_reference(study):
     }
     heights = [row["height_mm"] for row in study.design_rows if row["row"].startswith("O")]
     assert min(heights) >= 2.0 and max(heights) <= 6.0 and len(set(heights)) > 3
+
+
+@pytest.mark.parametrize(("high", "allowed"), [(0.3, True), (0.29, False), (0.2, False), (0.1, False)])
+def test_a_range_is_a_step_long_or_more(high, allowed):
+    """From 0.2 to 0.3 by 0.1 is one, though their sum as numbers of the machine is more; less is refused."""
+    factor = {"name": "row_offset_fraction", "low": 0.2, "high": high, "step": 0.1}
+    asked = optimise_of(nested_goals(factors=[factor]))
+    fault = fault_of_search(asked, {}, {"surfaces": ["convex", "plain"]})
+    assert (fault is None) == allowed
+    assert allowed or fault.endswith(f"has row_offset_fraction from 0.2 to {high:g}, allowed is a step or more")
+
+
+def nested_goals(**asked):
+    """The settings that say what the small search asks, with others in their place."""
+    goals = {"most_core_h": 1.0, "least_left_fraction": 0.5, "seed": 1}
+    return {"packings": SMALL["packings"], "optimise": {**goals, **SMALL["optimise"], **asked}}
 
 
 def test_all_patterns_of_a_packing_share_a_bed_and_a_plain_sample(study):
