@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from bulkwear.postproc.mesh import PLAIN
@@ -26,14 +27,8 @@ LAYOUT = (
 )  # keys of it; what a spacing is between is left open there
 PARTICLE_SCALE = "particle_scale"  # column of a design whose study is one of particle size
 CONDITIONS = ("velocity_m_per_s", "bed_thickness_mm")  # columns that are no property of the pattern
-PATTERN = (  # columns that make two rows the same
-    "major_radius_mm",
-    "minor_radius_mm",
-    "column_spacing_mm",
-    "height_mm",
-    "velocity_m_per_s",
-    "bed_thickness_mm",
-)
+BUMPS = ("major_radius_mm", "minor_radius_mm", "column_spacing_mm", "height_mm")  # columns of its bumps
+PATTERN = (*BUMPS, *CONDITIONS)  # columns that make two rows the same
 
 
 def compares_rows(study: Study) -> bool:
@@ -127,14 +122,25 @@ def published_rows(study: Study) -> dict[str, str]:
     """
     if all(ratio is None for ratio in equivalent_size_ratios(study).values()):
         return {}
-    with open(PUBLISHED_DESIGN, encoding="utf-8", newline="") as stream:
-        published = {tuple(float(row[name]) for name in PATTERN): row["row"] for row in csv.DictReader(stream)}
-    layout, own = read_yaml(PUBLISHED_LAYOUT, PACKAGE).values["pattern"], study.settings["pattern"]
-    laid_out_so = [row for row in study.design_rows if all((own | row).get(key) == layout[key] for key in LAYOUT)]
-    levels = {str(row["row"]): tuple(row.get(name) for name in PATTERN) for row in laid_out_so}
-    same = {row: published[found] for row, found in levels.items() if found in published}
+    levels = {str(row["row"]): row_levels(study, row) for row in study.design_rows}
+    published = published_levels()
+    same = {row: name for row, found in levels.items() for name, theirs in published.items() if found == theirs}
     settings = replicate_settings(study)
     return same | {settings[row]: theirs for row, theirs in same.items()}
+
+
+def row_levels(study: Study, row: Mapping[str, Any], columns: Sequence[str] = PATTERN) -> dict[str, Any]:
+    """Return what of a row is compared with those of the source: columns, and LAYOUT."""
+    laid_out = study.settings["pattern"] | row
+    return {name: row.get(name) for name in columns} | {key: laid_out.get(key) for key in LAYOUT}
+
+
+def published_levels(columns: Sequence[str] = PATTERN) -> dict[str, dict[str, Any]]:
+    """Return the same of every row of Yan 2022, Table 3.8, by its name."""
+    layout = read_yaml(PUBLISHED_LAYOUT, PACKAGE).values["pattern"]
+    with open(PUBLISHED_DESIGN, encoding="utf-8", newline="") as stream:
+        rows = {row["row"]: {name: float(row[name]) for name in columns} for row in csv.DictReader(stream)}
+    return {name: row | {key: layout[key] for key in LAYOUT} for name, row in rows.items()}
 
 
 def replicate_settings(study: Study) -> dict[str, str]:

@@ -12,6 +12,7 @@ from bulkwear.workflows.cases.sliding_sample import charts
 from bulkwear.workflows.cases.sliding_sample.particle_size import figure_findings
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import (
     bumps_and_particles,
+    has_published_pattern,
 )
 from bulkwear.workflows.cases.sliding_sample.study import compares_sizes, flow_runs, varies_scale
 from bulkwear.workflows.report.figure_findings import deepest_run
@@ -38,6 +39,7 @@ size_figure = partial(figure, "Particle size", when=varies_scale)
     "Wear against particle scale",
     finding=figure_findings.ratios_by_scale,
     inputs={"summary": SUMMARY, "published": PUBLISHED_LINES},
+    told={"same_pattern": has_published_pattern},
     tables=WEAR_TABLES | {"published_lines": "particle_size/published_lines.csv"},
     charts=(charts.WEAR_AGAINST_SCALE,),
     when=compares_sizes,
@@ -59,7 +61,7 @@ def wear_against_scale(job: Job) -> Any:
     from bulkwear.workflows.cases.sliding_sample.particle_size.plots import wear_by_scale as drawn
 
     wear = by_scale.wear_by_scale(read_summary(job.files.summary))
-    published = by_scale.lines_beside(pd.read_csv(job.files.published), wear)
+    published = by_scale.lines_beside(pd.read_csv(job.files.published), job.told.same_pattern)
     critical, forms = by_scale.critical_scale(wear)
     reference = f"relative to the plain sample at particle scale {wear['reference_scale'].iloc[0]:g}"
     remarks = [*job.remarks, reference, by_scale.critical_scale_text(critical)]

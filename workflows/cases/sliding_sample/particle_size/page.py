@@ -19,7 +19,7 @@ from bulkwear.postproc.tables.summary import patterned_name, read_summary
 from bulkwear.workflows.cases.sliding_sample.particle_size.collision import spread_over_scales
 from bulkwear.workflows.cases.sliding_sample.particle_size.figures import PUBLISHED_LINES
 from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import Pattern, published_at_scales
-from bulkwear.workflows.cases.sliding_sample.particle_size.study import bumps_and_particles
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import bumps_and_particles, has_published_pattern
 from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import (
     bed_sentences,
     lines_beside,
@@ -41,11 +41,13 @@ BRACKETS, UNITS = re.compile(r"(.*) \((.*)\)"), {"mm3/m": "mm³/m", "%": "%"}  #
 
 def told(study: Study) -> dict[str, Any]:
     """Return what the page is told besides what every page is: bumps and particles, whether wear is told over that of
-    plain samples, whether there are these, and the costs of the packings.
+    plain samples, whether their pattern is the source's, whether there are plain samples, and the costs of the
+    packings.
     """
     return {
         "bumps": bumps_and_particles(study),
         "compares_sizes": compares_sizes(study),
+        "same_pattern": has_published_pattern(study),
         "has_plain": bool(plain_runs(study)),
         "costs": {"packing_profiles": "packings/solver_cost.csv"},
     }
@@ -100,7 +102,7 @@ def critical_scale(study: Mapping[str, Any], folder: Path) -> list[Block]:
             "Straight lines of wear over that of the plain sample with the smallest particles simulated, against"
             " particle scale; the source's are over its plain sample at scale 1. Lack of fit: how probable it is that"
             " packings alone scatter the means of the scales so far off the line.",
-            beside_source=lines_beside_source(folder),
+            beside_source=lines_beside_source(study, folder),
         ),
         Table(
             pd.read_csv(folder / "particle_size" / "critical_scale_forms.csv"),
@@ -111,11 +113,11 @@ def critical_scale(study: Mapping[str, Any], folder: Path) -> list[Block]:
     ]
 
 
-def lines_beside_source(folder: Path) -> pd.DataFrame:
+def lines_beside_source(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
     """Return the source's lines at two scales beside our wear there."""
     wear = wear_by_scale(read_summary(folder / "summary.csv"))
     lines = pd.read_csv(current_project().file(PUBLISHED_LINES))
-    return published_at_scales(wear, lines_beside(lines, wear))
+    return published_at_scales(wear, lines_beside(lines, study["told"]["same_pattern"]))
 
 
 def plain_beds(study: Mapping[str, Any], summary: pd.DataFrame) -> pd.DataFrame:

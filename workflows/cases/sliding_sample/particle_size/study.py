@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.sliding_sample.study import plain_runs
+from bulkwear.workflows.cases.sliding_sample.study import BUMPS, plain_runs, published_levels, row_levels
 from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.engine.case import Parameters
 from bulkwear.workflows.engine.templates import templates_digest
@@ -13,6 +13,9 @@ from bulkwear.workflows.report.products import OfStudy
 
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
+
+
+PUBLISHED_RUN = "R5"  # whose pattern the source's study of particle size has (Yan 2022, section 4.5)
 
 
 def of_template(name: str) -> OfStudy:
@@ -61,6 +64,17 @@ def bumps_and_particles(study: Study) -> dict[str, dict[str, Any]]:
         for run in study.runs
         if run.parameters["derived"]["equivalent_size_ratio"] is not None
     }
+
+
+def has_published_pattern(study: Study) -> bool:
+    """Return whether the samples with bumps of all rows have those that the source's lines are of, run R5's, as far
+    apart and shifted as there.
+    """
+    theirs, patterns = (
+        published_levels(BUMPS)[PUBLISHED_RUN],
+        (row_levels(study, row, BUMPS) for row in study.design_rows),
+    )
+    return bool(bumps_and_particles(study)) and all(each == theirs for each in patterns)
 
 
 def _bumps_and_particles(parameters: Parameters) -> dict[str, Any]:

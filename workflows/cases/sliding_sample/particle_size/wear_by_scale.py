@@ -185,12 +185,11 @@ def published_by_size_ratio(lines: pd.DataFrame, scales: np.ndarray) -> pd.DataF
     return pd.concat([table, pd.DataFrame(ratios)], axis=1)
 
 
-def lines_beside(published: pd.DataFrame, wear: pd.DataFrame) -> pd.DataFrame:
-    """Return the published lines that ours can be set beside: those of patterned samples for the source's pattern only.
-
-    wear: as from `wear_by_scale`
+def lines_beside(published: pd.DataFrame, same_pattern: bool) -> pd.DataFrame:
+    """Return the published lines that ours can be set beside: those of patterned samples for the source's pattern only,
+    see `study.has_published_pattern`.
     """
-    return published if patterned_curve(wear) == CONVEX else published[published["curve"] == PLAIN]
+    return published if same_pattern else published[published["curve"] == PLAIN]
 
 
 def points_of(published: pd.DataFrame, wear: pd.DataFrame) -> pd.DataFrame:

@@ -1,9 +1,15 @@
 """The study of particle size: scales as rows of one pattern, and what is told of it."""
 
+from dataclasses import replace
+
 import pytest
 
 from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import Particles, Pattern, guidance
-from bulkwear.workflows.cases.sliding_sample.particle_size.study import bumps_and_particles, by_scale
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import (
+    bumps_and_particles,
+    by_scale,
+    has_published_pattern,
+)
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.report.page_parameters import page_parameters
 from bulkwear.workflows.report.text import number, setting_rows
@@ -29,6 +35,18 @@ def test_rows_are_particle_scales_of_one_pattern(fidelity):
     patterns = [run.parameters["pattern"] for run in found.runs if run.surface == "convex"]
     assert all(pattern == patterns[0] for pattern in patterns)
     assert [patterns[0][f"{name}_m"] for name in ("major_radius", "minor_radius", "height")] == [4e-3, 8e-3, 6e-3]
+
+
+@pytest.mark.parametrize(
+    ("of_row", "of_study"), [({"height_mm": 3.0}, {}), ({}, {"row_spacing_mm": 20}), ({"column_spacing_mm": 40}, {})]
+)
+def test_the_sources_lines_are_of_its_pattern_alone(of_row, of_study):
+    """Bumps of another height or farther apart than run R5's are another pattern, though they are convex too."""
+    found = study()
+    assert has_published_pattern(found)
+    settings = found.settings | {"pattern": found.settings["pattern"] | of_study}
+    rows = tuple(row | of_row for row in found.design_rows)
+    assert not has_published_pattern(replace(found, design_rows=rows, settings=settings))
 
 
 def test_paper_has_the_sources_bed():

@@ -154,8 +154,8 @@ def test_another_pattern_is_not_set_beside_the_sources():
     other = wear_by_scale(summary().replace({"surface": {"convex": "dimpled"}}))
     assert set(other["curve"]) == {"plain", "dimpled", *PARTS}
     assert critical_scale(other)[0].value == critical_scale(wear)[0].value
-    assert lines_beside(lines, wear)["curve"].tolist() == lines["curve"].tolist()
-    assert lines_beside(lines, other)["curve"].tolist() == ["plain"]
+    assert lines_beside(lines, same_pattern=True)["curve"].tolist() == lines["curve"].tolist()
+    assert lines_beside(lines, same_pattern=False)["curve"].tolist() == ["plain"]
 
 
 def test_the_chart_has_the_published_lines_from_end_to_end():
