@@ -5,7 +5,8 @@ A patterned and a plain sample of the same packing share their bed: they are com
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -19,6 +20,14 @@ def plain_of_row(summary: pd.DataFrame, column: str) -> pd.Series:
     """Return, for each run, a column's value of the plain run of the same design row; NaN without one."""
     plain = summary[summary["surface"] == PLAIN].set_index("row")[column]
     return summary["row"].map(plain)
+
+
+def still_designed(settings: Iterable[str], folder: Path) -> bool:
+    """Return whether all of some settings, of a table that an earlier study of that name may have left, are in the
+    design; folder: results/<study>.
+    """
+    design = pd.read_csv(folder / "design.csv", dtype=str, keep_default_na=False)
+    return set(settings) <= set(design["setting"])
 
 
 def wear_split(summary: pd.DataFrame) -> pd.DataFrame:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.sliding_sample import charts
-from bulkwear.workflows.cases.sliding_sample.grain_shape import compares_shapes, shape_finding
+from bulkwear.workflows.cases.sliding_sample.grain_shape import compares_shapes, shape_finding, shapes_of_study
 from bulkwear.workflows.cases.sliding_sample.study import compares_surfaces, finds_regimes, published_rows
 from bulkwear.workflows.report import figure_findings
 from bulkwear.workflows.report.page_parameters import is_deformed
@@ -108,6 +108,7 @@ def depth_distribution(job: Job) -> Any:
     when=compares_shapes,
     finding=shape_finding,
     inputs={"summary": SUMMARY},
+    told={"of_study": shapes_of_study},
     caption="""
     Wear per metre of travel of each surface, and of the patterned over the plain sample: of spheres against their
     rolling friction, over that of the materials (line, with 95 % intervals over packings), and of clumps (levels).
@@ -121,7 +122,7 @@ def wear_by_grain_shape(job: Job) -> Any:
     from bulkwear.workflows.cases.sliding_sample.grain_shape import shape_table
     from bulkwear.workflows.cases.sliding_sample.plots import grain_shape
 
-    table = shape_table(read_summary(job.files.summary))
+    table = shape_table(read_summary(job.files.summary), job.told.of_study)
     return grain_shape.wear_by_grain_shape(table, [*job.remarks, packings_remark(table["packings"])]), table
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -13,6 +13,7 @@ from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.display import in_display_units
 from bulkwear.postproc.tables.packings import BY, over_packings
+from bulkwear.workflows.cases.sliding_sample.comparison import still_designed
 from bulkwear.workflows.config.clumps import ROUND
 from bulkwear.workflows.report.sections import Block, Pictures, Points, Table
 from bulkwear.workflows.report.text import number
@@ -33,20 +34,27 @@ NOTE = (
 )
 
 
+def shapes_of_study(study: Study) -> dict[str, Any]:
+    """Return {column: setting of the study} of SHAPE and FACTOR, which rows without a value of their own have."""
+    return {name: study.settings["bed"][name] for name in (SHAPE, FACTOR)}
+
+
 def compares_shapes(study: Study) -> bool:
     """Return whether a study sets clumps beside spheres of several rolling frictions."""
-    rows = [row for row in study.design_rows if {SHAPE, FACTOR} <= row.keys()]
+    rows = [shapes_of_study(study) | row for row in study.design_rows if row.keys() & {SHAPE, FACTOR}]
     factors = {row[FACTOR] for row in rows if row[SHAPE] == ROUND}
     return len(factors) >= FEWEST_FACTORS and any(row[SHAPE] != ROUND for row in rows)
 
 
-def shape_table(summary: pd.DataFrame) -> pd.DataFrame:
+def shape_table(summary: pd.DataFrame, of_study: Mapping[str, Any]) -> pd.DataFrame:
     """Return a line per measure and setting: wear per metre of each surface (mm3/m), and patterned over plain (-).
 
-    summary: as from `summary.summary_table`, with the columns SHAPE and FACTOR of the design
+    summary: as from `summary.summary_table`, with the columns SHAPE and FACTOR of the design; of_study: what stands for
+    their empty cells, as from `shapes_of_study`
     Columns measure, setting, shape, FACTOR, value, packings, interval_low, interval_high, over_round (-), and of clumps
     same_as: the factors of spheres that give the same value, as text.
     """
+    summary = summary.fillna(dict(of_study))
     wear = summary[[*BY, SHAPE, FACTOR, PER_METRE]]
     measures = {
         f"{surface} sample": in_display_units(rows).rename(columns=lambda name: _value(name, PER_METRE))
@@ -108,7 +116,10 @@ def factors_text(found: Sequence[float], factors: np.ndarray) -> str:
 def answers(folder: Path) -> list[str]:
     """Return in sentences what each clump does, beside spheres; nothing of a study of other things."""
     path = folder / "figures" / f"{FIGURE}.csv"
-    return shape_sentences(pd.read_csv(path, keep_default_na=False, na_values=[""])) if path.is_file() else []
+    if not path.is_file():
+        return []
+    table = pd.read_csv(path, keep_default_na=False, na_values=[""], dtype={"setting": str})
+    return shape_sentences(table) if still_designed(table["setting"], folder) else []
 
 
 def shape_sentences(table: pd.DataFrame) -> list[str]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from bulkwear.postproc.statistics.intervals import Ends
+from bulkwear.workflows.cases.sliding_sample.comparison import still_designed
 from bulkwear.workflows.cases.sliding_sample.search.record import FORESEEN, best_confirmed
 from bulkwear.workflows.config.rounds import last_round
 from bulkwear.workflows.report.sections import Cards, Pictures, Section, Table, Text
@@ -72,9 +73,9 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
 
 def answers(folder: Path) -> list[str]:
     """Return what a search found, in sentences; nothing where nothing was looked for."""
-    if not (folder / CONFIRMED).is_file():
+    confirmed = _confirmed(folder)
+    if confirmed is None:
         return []
-    confirmed = _read(folder / CONFIRMED)
     best, reference = best_confirmed(confirmed), confirmed["setting"].iloc[-1]
     names = confirmed.columns[1 : confirmed.columns.get_loc("packings")]
     shape = ", ".join(_measure(name, best[name]) for name in names)
@@ -94,9 +95,18 @@ def of_best(summary: pd.DataFrame, folder: Path) -> pd.DataFrame:
     """Return the runs of a summary that are of the best confirmed pattern, all of them where nothing was looked for:
     one that was tried in fewer packings may wear less by luck.
     """
+    confirmed = _confirmed(folder)
+    return summary if confirmed is None else summary[summary["setting"] == best_confirmed(confirmed)["setting"]]
+
+
+def _confirmed(folder: Path) -> pd.DataFrame | None:
+    """Return the confirmed patterns of a study; None where nothing was looked for, or by an earlier choice of settings
+    whose patterns are not in the study's design any more.
+    """
     if not (folder / CONFIRMED).is_file():
-        return summary
-    return summary[summary["setting"] == best_confirmed(_read(folder / CONFIRMED))["setting"]]
+        return None
+    confirmed = _read(folder / CONFIRMED)
+    return confirmed if still_designed(confirmed["setting"], folder) else None
 
 
 def _measure(name: str, value: float) -> str:

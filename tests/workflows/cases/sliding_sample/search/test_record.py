@@ -77,6 +77,15 @@ def test_key_numbers_are_those_of_the_best_confirmed(results):
     assert len(page.of_best(summary, folder / "search")) == len(summary)
 
 
+def test_a_search_of_an_earlier_choice_answers_nothing(tmp_path):
+    """Its confirmed patterns are not in the design of a study that looks for none, of which all runs are told."""
+    (tmp_path / "search").mkdir()
+    pd.DataFrame({"setting": ["O5", "R5"]}).to_csv(tmp_path / page.CONFIRMED, index=False)
+    summary = pd.DataFrame({"setting": ["R5", "R9"]})
+    summary.to_csv(tmp_path / "design.csv", index=False)
+    assert page.answers(tmp_path) == [] and page.of_best(summary, tmp_path) is summary
+
+
 @pytest.mark.verify
 def test_confirmed_patterns_stand_beside_the_reference(results):
     """The best wears less than R5 by what their heights make, in the same packings."""
