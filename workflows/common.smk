@@ -2,6 +2,7 @@
 
 import itertools
 import sys
+from dataclasses import asdict  # of params: Snakemake does not see that an object of a class of ours has changed
 from functools import cache
 from pathlib import Path
 

@@ -72,13 +72,13 @@ __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies",
 
 TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besides its own name
 CONFIRMATION = "_confirmation"  # ends the name of the study that simulates what a study's regression found best
-STUDY_NAME = re.compile(r"[a-z][a-z0-9_]*")
+STUDY_NAME = re.compile(r"(?!figure_|tables_)[a-z][a-z0-9_]*")  # rules of figures and tables begin so
 RULE_NAMES = frozenset(
     found[1]
-    for path in Path(__file__).parents[1].rglob("*.smk")
-    for found in re.finditer(r"^rule (\w+):", path.read_text(encoding="utf-8"), re.MULTILINE)
+    for path in (*Path(__file__).parents[1].rglob("*.smk"), Path(__file__).parents[2] / "Snakefile")
+    for found in re.finditer(r"^(?:rule|checkpoint) (\w+):", path.read_text(encoding="utf-8"), re.MULTILINE)
 )
-DESIGNS = "config/designs"
+RULES_SAID, DESIGNS = ", ".join(sorted(RULE_NAMES)), "config/designs"
 
 
 @dataclass(frozen=True)
@@ -223,7 +223,7 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
     if not STUDY_NAME.fullmatch(name) or name in RULE_NAMES or name.endswith(TARGETS):
         raise ConfigError(
             f"config/studies/{name}.yaml: a study cannot be called {name}, allowed are small letters, digits and"
-            f" underscores, not ending in {' or '.join(TARGETS)}, and none of {', '.join(sorted(RULE_NAMES))}."
+            f" underscores, not figure_ or tables_ first or {' or '.join(TARGETS)} last, and none of {RULES_SAID}."
         )
     studies = list_studies(project)
     confirms = name.removesuffix(CONFIRMATION) if name not in studies and name.endswith(CONFIRMATION) else ""

@@ -36,6 +36,10 @@ NO_PROPOSAL_CHANGES = (  # with these settings: goals of the search, and what no
 
 Runs = Callable[[Layer], Sequence[Any]]  # the checked runs of a row; raises ConfigError
 
+OF_SEARCH = ("first_rows", "rows_of_round", "most_rows", "confirming_packings", "most_core_h", "after_h", "seed")
+FURTHER_OF_SEARCH = ("factors", "least_left_fraction", "largest_height_over_radius")
+OF_FACTOR = ("name", "low", "high", "step")
+
 
 @dataclass(frozen=True)
 class Optimise:
@@ -91,16 +95,21 @@ class Optimise:
 
 
 def optimise_of(settings: Mapping[str, Any]) -> Optimise | None:
-    """Return what the settings ask of a search, None where nothing is looked for."""
+    """Return what the settings ask of a search, None where nothing is looked for. Raises ConfigError for one of which
+    something is missing: there are no defaults.
+    """
     told = settings.get(OPTIMISE)
     if told is None:
         return None
-    same = ("first_rows", "rows_of_round", "most_rows", "confirming_packings", "most_core_h", "after_h", "seed")
+    if missing := next((key for key in (*OF_SEARCH, *FURTHER_OF_SEARCH) if key not in told), None):
+        raise ConfigError(f"{OPTIMISE}.{missing} is missing, allowed is {OPTIMISE} with all of its keys.")
+    if part := next((each for each in told["factors"] if len(each) < len(OF_FACTOR)), None):
+        raise ConfigError(f"{OPTIMISE}.factors has {part}, allowed are factors with {', '.join(OF_FACTOR)}.")
     return Optimise(
         factors=tuple(Range(**each) for each in told["factors"]),
         packings=settings["packings"],
         least_left=told["least_left_fraction"],
-        **{key: told[key] for key in same},
+        **{key: told[key] for key in OF_SEARCH},
     )
 
 

@@ -124,7 +124,7 @@ checkpoint further_packings:
         study="|".join(name for name in STUDIES if STUDIES[name].optimise is None) or "no_study",
     localrule: True
     params:
-        until=lambda wildcards: study_of(wildcards).until,
+        until=lambda wildcards: asdict(study_of(wildcards).until),
         rows=lambda wildcards: study_of_round(wildcards).design_table(),
         possible=lambda wildcards: rows_by_setting(study_of(wildcards)),
     message:

@@ -8,6 +8,7 @@ else; cycles of other inputs move to `superseded/<digest>`, and come back when t
 from __future__ import annotations
 
 import contextlib
+import errno
 import fcntl
 import hashlib
 import os
@@ -22,6 +23,7 @@ from bulkwear.workflows.engine.records import digest as digest  # hashes of inpu
 
 STATE = "state.json"
 LOCK = ".lock"  # of a folder that a process works on, which has it locked
+HELD_BY_ANOTHER = (errno.EAGAIN, errno.EACCES)  # of a lock; any other error is the file system's
 DIGEST_LETTERS = 12  # of the hash, in the name of a superseded folder
 
 
@@ -233,6 +235,14 @@ def _move(folders: Iterable[Path], target: Path) -> None:
         os.replace(folder, target / folder.name)
 
 
+def no_lock(folder: Path, fault: OSError) -> str:
+    """Return in a sentence that a folder's file system cannot lock files."""
+    return (
+        f"{folder}: its file system cannot lock files ({fault.strerror}); allowed is one that can, Lustre with the"
+        " mount option flock."
+    )
+
+
 @contextlib.contextmanager
 def only_driver(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
     """Hold a folder's lock; the kernel releases it with the process. Waits, and says so, while another one holds it."""
@@ -240,7 +250,9 @@ def only_driver(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
     with open(folder / LOCK, "a+") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
+        except OSError as fault:
+            if fault.errno not in HELD_BY_ANOTHER:
+                raise OSError(fault.errno, no_lock(folder, fault)) from None
             lock.seek(0)
             say(f"process {lock.read().strip() or 'unknown'} works on {folder}; waiting for it to end")
             fcntl.flock(lock, fcntl.LOCK_EX)

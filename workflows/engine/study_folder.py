@@ -8,6 +8,8 @@ import time
 from pathlib import Path
 from typing import TextIO
 
+from bulkwear.workflows.engine.state import HELD_BY_ANOTHER, no_lock
+
 LOCK = ".snakemake_lock"
 AHEAD_S = 2.0  # by which the clock of a file server may be ahead
 
@@ -28,7 +30,10 @@ def take(folder: Path) -> TextIO:
         raise StudyFolderError(f"{folder}: {fault.strerror}; a study needs a folder that it can write to.") from None
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
+    except OSError as fault:
+        if fault.errno not in HELD_BY_ANOTHER:
+            lock.close()
+            raise StudyFolderError(no_lock(folder, fault)) from None
         lock.seek(0)
         other = lock.read().strip() or "unknown"
         lock.close()

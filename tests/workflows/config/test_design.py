@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from dataclasses import asdict
 
 import pytest
 
@@ -17,6 +18,7 @@ from bulkwear.workflows.config.layers import ConfigError, command_line_layer
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.derived import rayleigh_time, rolling_coefficient_for_solver, whole_steps, youngs_modulus
 from bulkwear.workflows.report.page_parameters import figure_remarks
+from tests import REPOSITORY
 from tests.support.tiny import tiny_study
 
 ROUNDING = 1e-12  # relative; a few floating-point operations
@@ -712,3 +714,22 @@ def test_worn_through_needs_a_thickness():
         tiny_study(wear={"worn_through": "cap"})
     study = tiny_study(wear={"worn_through": "cap", "local_thickness_mm": 2})
     assert study.run("R9_convex").parameters["wear"]["local_thickness_m"] == pytest.approx(0.002)
+
+
+@pytest.mark.parametrize(
+    "name", ["further_packings", "proposed_rows", "default_studies", "figure_forces", "tables_beds"]
+)
+def test_a_study_that_is_called_as_a_rule_is_refused(name):
+    """Snakemake would have two of that name: rules, checkpoints, and those that are made of figures and tables."""
+    with pytest.raises(ConfigError, match=f"a study cannot be called {name}, allowed are small letters"):
+        load_study(name)
+
+
+def test_what_rounds_depend_on_is_of_types_that_snakemake_compares():
+    """An object of a class of ours would never count as changed: a wider goal would do nothing."""
+    of_class = re.compile(r"=lambda wildcards: study_of\(wildcards\)\.(until|optimise),")
+    found = [path.name for path in (REPOSITORY / "workflows").rglob("*.smk") if of_class.search(path.read_text())]
+    assert found == []
+    asked = load_study("demo", overrides={"until": {"width_fraction": 0.05, "most_packings": 6, "most_core_h": 3}})
+    for goal in (asked.until, load_study("optimised_pattern").optimise):
+        json.dumps(asdict(goal))

@@ -76,7 +76,7 @@ def test_a_range_is_a_step_long_or_more(high, allowed):
 
 def nested_goals(**asked):
     """The settings that say what the small search asks, with others in their place."""
-    goals = {"most_core_h": 1.0, "least_left_fraction": 0.5, "seed": 1}
+    goals = {"most_core_h": 1.0, "least_left_fraction": 0.5, "largest_height_over_radius": 1.0, "seed": 1}
     return {"packings": SMALL["packings"], "optimise": {**goals, **SMALL["optimise"], **asked}}
 
 
@@ -195,3 +195,15 @@ def test_what_chooses_rows_or_packings_does_not_stand_beside_a_search(tmp_path, 
     """Each would undo what the other decides."""
     with pytest.raises(ConfigError, match=f"{key} stands beside optimise"):
         load_study(STUDY, Project(tmp_path), overrides={**SMALL, key: value})
+
+
+@pytest.mark.parametrize("left", [("most_core_h",), ("most_core_h", "after_h", "factors")])
+def test_a_search_without_all_of_its_keys_is_one_sentence(left):
+    """Nothing has a default: the first key that is missing is named; so is what a factor lacks."""
+    whole = load_study(STUDY).settings["optimise"]
+    some = {key: whole[key] for key in left}
+    with pytest.raises(ConfigError, match=r"optimise\.first_rows is missing, allowed is optimise with all of its keys"):
+        load_study("demo", overrides={"optimise": some})
+    stepless = [{key: value for key, value in each.items() if key != "step"} for each in whole["factors"]]
+    with pytest.raises(ConfigError, match=r"optimise\.factors has .* allowed are factors with name, low, high, step"):
+        load_study("demo", overrides={"optimise": {**whole, "factors": stepless}})

@@ -1,10 +1,13 @@
 """The folder of a study: one Snakemake at a time, told where it cannot be written, nothing of the future in it."""
 
+import errno
+import fcntl
 import os
 import time
 
 import pytest
 
+from bulkwear.workflows.engine.state import only_driver
 from bulkwear.workflows.engine.study_folder import AHEAD_S, StudyFolderError, date_back, take
 
 DAY = 86400.0  # s
@@ -18,6 +21,23 @@ def test_a_second_snakemake_is_refused_until_the_first_ends(tmp_path):
         take(folder)
     first.close()
     take(folder).close()
+
+
+@pytest.mark.parametrize("code", [errno.ENOSYS, errno.ENOLCK])
+def test_a_file_system_without_locks_is_told_as_such(tmp_path, monkeypatch, code):
+    """Of a study and of a simulation: no other process is blamed, and nothing waits for ever."""
+
+    def flock(file, operation):
+        raise OSError(code, os.strerror(code))
+
+    monkeypatch.setattr(fcntl, "flock", flock)
+    words = (
+        r"results: its file system cannot lock files .*; allowed is one that can, Lustre with the mount option flock"
+    )
+    with pytest.raises(StudyFolderError, match=words):
+        take(tmp_path / "results")
+    with pytest.raises(OSError, match=words), only_driver(tmp_path / "results", pytest.fail):
+        pass
 
 
 def test_a_folder_that_cannot_be_written_is_told(tmp_path):

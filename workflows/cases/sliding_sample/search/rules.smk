@@ -17,7 +17,7 @@ checkpoint proposed_rows:
         study="|".join(name for name in STUDIES if STUDIES[name].optimise) or "no_study",
     localrule: True
     params:
-        search=lambda wildcards: study_of(wildcards).optimise,
+        search=lambda wildcards: asdict(study_of(wildcards).optimise),
         digest=lambda wildcards: study_of(wildcards).search_digest,
         rows=lambda wildcards: study_of_round(wildcards).design_table(),
         settings=SETTINGS,
