@@ -105,7 +105,7 @@ STUDIES = checked_studies(SETTINGS, config.get("studies", []))
 wildcard_constraints:
     study="|".join(STUDIES) or "no_study",
     run=r"[A-Za-z0-9][A-Za-z0-9_-]*",
-    bed=r"bed_\d+",
+    bed=r"bed_[A-Za-z0-9][A-Za-z0-9_-]*",
 
 
 CASES = {study.case.name: study.case for study in STUDIES.values()}

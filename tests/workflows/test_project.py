@@ -90,7 +90,7 @@ def test_a_project_runs_to_its_page(finished):
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "A dimpled sample" in page and "over 3" in page
     deck = (folder / "A_plain/cycle_001/deck.in").read_text()
-    assert deck.endswith(f'print "{WORD}"\n') and "3300" in (folder / "beds/bed_1/deck.in").read_text()
+    assert deck.endswith(f'print "{WORD}"\n') and "3300" in (folder / "beds/bed_A/deck.in").read_text()
     wear = pd.read_csv(folder / "A_plain/wear.csv")
     archard = 6.3e-13 * wear["sliding_work_J"].sum()
     assert wear["worn_volume_m3"].sum() == pytest.approx(archard / 3.0, rel=ROUNDING)

@@ -95,9 +95,9 @@ def test_ctrl_c_says_how_to_go_on(tmp_path):
     """What a terminal sends with Ctrl-C, while the solver works: the job says in a line how to go on, without a
     traceback, and no solver is left."""
     folder = workspace(tmp_path)
-    process = snakemake(folder, "results/tiny/beds/bed_1/bed.restart")
+    process = snakemake(folder, "results/tiny/beds/bed_R5/bed.restart")
     deadline = time.monotonic() + TIMEOUT
-    while not list(folder.glob("results/tiny/beds/bed_1/log.liggghts")):
+    while not list(folder.glob("results/tiny/beds/bed_R5/log.liggghts")):
         assert process.poll() is None and time.monotonic() < deadline
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)

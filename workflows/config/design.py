@@ -34,7 +34,7 @@ from bulkwear.workflows.config.layers import (
 )
 from bulkwear.workflows.config.materials import check_calibrated_for, check_material_names, check_materials
 from bulkwear.workflows.config.optimise import Optimise, optimise_of, search_digest, with_search
-from bulkwear.workflows.config.packings import PACKINGS, Packings, with_packings, without_packings
+from bulkwear.workflows.config.packings import PACKINGS, Packings, named_by_rows, with_packings, without_packings
 from bulkwear.workflows.config.run_checks import (
     COMMON_CHECKS,
     LAST_CHECKS,
@@ -193,14 +193,14 @@ class Study:
     @cached_property
     def _beds(self) -> tuple[dict[str, dict[str, Any]], dict[str, str]]:
         with templates_read_once():
-            return self.case.beds(self.all_runs)
+            return named_by_rows(self.all_runs, *self.case.beds(self.all_runs))
 
     @property
     def beds(self) -> dict[str, dict[str, Any]]:
         """Return {bed id: parameters}; runs with equal parameters share a bed, and some cases have none.
 
         A bed is that of the whole design, so that a run is the same whichever rows are chosen beside it, and however
-        many packings there are.
+        many packings there are. Its id is that of its first row.
         """
         beds, bed_of = self._beds
         used = {bed_of[run.name] for run in self.runs if run.name in bed_of}

@@ -15,6 +15,7 @@ from typing import Any
 from bulkwear.workflows.config.layers import ConfigError, Layer
 from bulkwear.workflows.config.optimise import optimise_of
 from bulkwear.workflows.config.until import first_packings, until_of
+from bulkwear.workflows.engine.case import Run
 from bulkwear.workflows.engine.decks import SMALLEST_SEED, primes
 
 PACKINGS = "packings"  # key of the settings, and column of designs whose rows have numbers of their own
@@ -181,3 +182,20 @@ def _check_names(rows: Sequence[Layer], added: Mapping[str, Layer], settings: Ma
                 f"{row.where()}: row is '{name}', which is what a packing of row {setting} is called, allowed is"
                 f" another name, or {PACKINGS}: 1."
             )
+
+
+def named_by_rows(
+    runs: Sequence[Run], beds: Mapping[str, Mapping[str, Any]], bed_of: Mapping[str, str]
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """Return beds and {run: bed} under the names of the first rows that start from them, as bed_R9-2.
+
+    A bed so keeps its folder when a design gets further rows or packings. Where the surfaces of a row start from beds
+    of their own, those are named by runs. runs: of the whole design; beds, bed_of: as from `Case.beds`
+    """
+    names: dict[str, str] = {}
+    for run in runs:
+        bed = bed_of.get(run.name)
+        if bed is not None and bed not in names:
+            of_row = f"bed_{run.row}"
+            names[bed] = f"bed_{run.name}" if of_row in names.values() else of_row
+    return {names[bed]: beds[bed] for bed in names}, {run: names[bed] for run, bed in bed_of.items()}

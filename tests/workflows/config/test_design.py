@@ -404,16 +404,16 @@ def test_acceleration_multiplies_the_wear_coefficient(config):
 def test_convex_and_plain_share_a_bed_and_another_thickness_does_not(config):
     """Runs with equal bed parameters start from one bed."""
     study = load_study("small", config.project)
-    assert study.bed_of("R9_convex") == study.bed_of("R9_plain") == "bed_1"
-    assert study.bed_of("R5_convex") == study.bed_of("R5_plain") == "bed_2"
-    assert list(study.beds) == ["bed_1", "bed_2"]
+    assert study.bed_of("R9_convex") == study.bed_of("R9_plain") == "bed_R9"
+    assert study.bed_of("R5_convex") == study.bed_of("R5_plain") == "bed_R5"
+    assert list(study.beds) == ["bed_R9", "bed_R5"]
     assert [bed["thickness_m"] for bed in study.beds.values()] == [0.04, 0.03]
 
 
 def test_velocity_and_pattern_do_not_make_another_bed(config):
     """Rows that differ in velocity, radii, spacing and height share a bed: it settles at rest."""
     config.edit("designs/small.csv", "R5,4,8,60,6.0,2.0,30", "R5,4,8,60,3.0,2.0,40")
-    assert list(load_study("small", config.project).beds) == ["bed_1"]
+    assert list(load_study("small", config.project).beds) == ["bed_R9"]
 
 
 @pytest.mark.parametrize(

@@ -82,7 +82,7 @@ def nested_goals(**asked):
 
 def test_all_patterns_of_a_packing_share_a_bed_and_a_plain_sample(study):
     """One bed per packing, and the plain twin of the reference stands for that of every other pattern."""
-    assert list(study.beds) == ["bed_1", "bed_2", "bed_3"]
+    assert list(study.beds) == ["bed_R5", "bed_R5-2", "bed_R5-3"]
     assert study.bed_of("O1_convex") == study.bed_of("R5_plain") and study.same_as("O1_plain") == "R5_plain"
 
 

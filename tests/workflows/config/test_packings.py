@@ -9,6 +9,8 @@ import pytest
 
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.config.packings import named_by_rows
+from bulkwear.workflows.engine.case import Run
 from bulkwear.workflows.engine.decks import primes
 from bulkwear.workflows.forecast.forecast import forecast_table, work_of
 from bulkwear.workflows.forecast.rates import DEFAULT, read_rates
@@ -69,6 +71,27 @@ def test_what_was_simulated_stays_the_same_with_more_packings(config, rows):
         assert more.bed_of(run.name) == fewer.bed_of(run.name)
         assert more.beds[more.bed_of(run.name)] == fewer.beds[fewer.bed_of(run.name)]
     assert [run.name for run in more.runs if run.row == "R5"] == ["R5_convex", "R5_plain"]
+
+
+def test_a_bed_keeps_its_name_when_a_design_gets_another_row(config):
+    """It is that of the row that first starts from it, so that a bed of another thickness renames none."""
+    before = small(config, 2)
+    header, *rows = config.path("designs/small.csv").read_text(encoding="utf-8").splitlines()
+    thinner = {"row": "R6", "bed_thickness_mm": "20"}
+    cells = zip(header.split(","), rows[-1].split(","), strict=True)
+    rewrite(config, "\n".join([",".join(thinner.get(name, cell) for name, cell in cells), *rows]), more="")
+    after = small(config, 2)
+    assert after.bed_of("R6-2_plain") == "bed_R6-2" and len(after.beds) == len(before.beds) + 2
+    for run in before.runs:
+        assert after.bed_of(run.name) == before.bed_of(run.name) == f"bed_{run.row}"
+
+
+def test_surfaces_with_beds_of_their_own_name_them():
+    """Two beds of one row, as a project's case may have: the second is named by its run."""
+    runs = [Run(f"R5_{surface}", "R5", surface, {}) for surface in ("convex", "plain")]
+    beds, bed_of = named_by_rows(runs, {"a": {"seed": 1}, "b": {"seed": 2}}, {"R5_convex": "b", "R5_plain": "a"})
+    assert beds == {"bed_R5": {"seed": 2}, "bed_R5_plain": {"seed": 1}}
+    assert bed_of == {"R5_convex": "bed_R5", "R5_plain": "bed_R5_plain"}
 
 
 def test_low_seeds_are_told_apart(config):

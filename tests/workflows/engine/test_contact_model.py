@@ -68,7 +68,7 @@ TOUCHING = 1e-4  # relative, of a capillary force; the elastic one of an overlap
 def block(**solver):
     """The block of a deck as it is rendered with these settings."""
     study = tiny_study(solver=solver)
-    text = bed_deck_text(study.case, study.beds["bed_1"])
+    text = bed_deck_text(study.case, study.beds["bed_R5"])
     return text[text.index("# --- contact model") : text.index("# --- geometry")]
 
 
@@ -158,14 +158,14 @@ def test_a_pin_is_hertzian():
 
 def test_a_bed_knows_only_what_its_deck_uses():
     """Settings of pictures, ranks and of models that are not chosen distinguish no beds; those of a chosen model do."""
-    bed = tiny_study().beds["bed_1"]
+    bed = tiny_study().beds["bed_R5"]
     assert set(bed["solver"]) == {"rayleigh_fraction", "rolling_radius", *CHOICES}
     for same in ({"ranks": 2}, {"picture_interval_mm": 3}, {"wear_interval_mm": 3}, PROPERTIES):
-        assert tiny_study(solver=same).beds["bed_1"] == bed
+        assert tiny_study(solver=same).beds["bed_R5"] == bed
     sticky = [tiny_study(solver=PROPERTIES | {"cohesion": "sjkr", **more}) for more in ({}, {"rolling_stiffness": 9.0})]
-    assert sticky[0].beds["bed_1"] == sticky[1].beds["bed_1"] != bed
+    assert sticky[0].beds["bed_R5"] == sticky[1].beds["bed_R5"] != bed
     other = tiny_study(solver=PROPERTIES | {"cohesion": "sjkr", "cohesion_energy_density_j_per_m3": 2e5})
-    assert other.beds["bed_1"] != sticky[0].beds["bed_1"]
+    assert other.beds["bed_R5"] != sticky[0].beds["bed_R5"]
 
 
 # ---------------------------------------------------------------- on the real solver

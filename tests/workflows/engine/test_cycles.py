@@ -648,7 +648,7 @@ def test_the_study_says_who_searches(tmp_path, monkeypatch, search):
 
     monkeypatch.setattr(cycles, "run_deck", stopped)
     study = tiny_study(solver={"search": search})
-    run, bed = study.run("R9_convex").parameters, study.beds["bed_1"]
+    run, bed = study.run("R9_convex").parameters, study.beds["bed_R5"]
     chain = Chain("R9_convex", tmp_path, study.case, run, tmp_path / "surface.vtu", bed)
     for span in (None, first_span(run)):
         with pytest.raises(SolverError, match="stopped"):

@@ -135,7 +135,7 @@ def test_a_word_in_the_template_of_beds_is_part_of_a_bed(edited):
     """Two values make two beds, and the word stands in the bed's deck."""
     edited("settled_bed", "# {{ my_word }}")
     studies = [tiny_study(deck={"my_word": value}) for value in (1, 2)]
-    beds = [study.beds["bed_1"] for study in studies]
+    beds = [study.beds["bed_R5"] for study in studies]
     assert beds[0] != beds[1]
     assert bed_deck_text(studies[1].case, beds[1]).endswith("# 2\n")
 

@@ -56,11 +56,11 @@ def test_changed_wear_code_changes_the_hash(study, monkeypatch):
 
 def test_an_edited_template_changes_the_hash(study, monkeypatch):
     """A word more in a deck makes another run and another bed."""
-    before = digest_of(study, "R9_convex"), bed_digest(study.case, study.beds["bed_1"])
+    before = digest_of(study, "R9_convex"), bed_digest(study.case, study.beds["bed_R5"])
     for module in (case, chain):
         monkeypatch.setattr(module, "render", lambda *given: templates.render(*given) + "# a word more\n")
     assert digest_of(study, "R9_convex") != before[0]
-    assert bed_digest(study.case, study.beds["bed_1"]) != before[1]
+    assert bed_digest(study.case, study.beds["bed_R5"]) != before[1]
 
 
 def test_a_longer_run_of_the_tester_is_the_same_one():

@@ -148,7 +148,7 @@ def test_runs_hang_on_the_project_s_python(mine):
     """Another line in a law or in a case gives another hash; figures and page do not."""
     study = load_study(STUDY)
     case, (run,) = study.case, study.runs
-    bed = study.beds["bed_1"]
+    bed = study.beds["bed_A"]
     first = run_digest(case, run.parameters, bed)
     assert code_of_case(find_case("sliding_sample")) == {} and set(code_of_case(case)) == {"cases/dimpled/case.py"}
     for name in ("page.py", "figures.py", "plots/map.py"):
@@ -169,7 +169,7 @@ def test_what_a_run_is_simulated_from_now_is_told(mine, tmp_path):
     """The first line of a deck, else the first setting that differs; nothing where nothing was kept."""
     study = load_study(STUDY)
     (run,) = study.runs
-    found = simulated_from(study.case, run.parameters, study.beds["bed_1"])
+    found = simulated_from(study.case, run.parameters, study.beds["bed_A"])
     assert why_again(tmp_path, found) is None
     cycle_folder(tmp_path, 0).mkdir()
     kept = cycle_folder(tmp_path, 0) / SIMULATED_FROM

@@ -51,9 +51,9 @@ SHORT = 40  # letters, of what Snakemake shows of jobs
 PROFILES = REPOSITORY / "profiles"
 # Particles that LIGGGHTS 3.8.0 counted in beds at quick fidelity.
 COUNTED = {
-    "demo": {"bed_1": 6964},
-    "screening": {"bed_1": 45520, "bed_2": 11380, "bed_3": 22760},
-    "particle_size": {"bed_4": 13619, "bed_6": 4124, "bed_8": 1777, "bed_9": 1261, "bed_10": 929, "bed_11": 549},
+    "demo": {"bed_R5": 6964},
+    "screening": {"bed_R1": 45520, "bed_R2": 11380, "bed_R6": 22760},
+    "particle_size": {"bed_S4": 13619, "bed_S6": 4124, "bed_S8": 1777, "bed_S9": 1261, "bed_S10": 929, "bed_S12": 549},
 }
 
 

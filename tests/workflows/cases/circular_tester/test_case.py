@@ -79,7 +79,7 @@ def test_one_bed_serves_all_samples():
 def test_everything_lies_in_the_domain(shape):
     """Sample, block, consolidator and trough; the block encloses the sample; the consolidator faces the bed below."""
     study = tiny_tester(tester={"shape": shape})
-    bed = study.beds["bed_1"]
+    bed = study.beds["bed_plain"]
     low, high = np.array(tester_deck.domain(bed)).reshape(3, 2).T
     meshes = {"block": tester_deck.block_mesh(bed), "consolidator": tester_deck.consolidator_mesh(bed)}
     if shape == "ring":
@@ -120,7 +120,7 @@ def test_the_sample_faces_the_flow():
 def test_a_ring_turns_as_fast_as_a_channel_goes():
     """At the middle of the sample the trough has the same velocity; a revolution takes as long."""
     channel, ring = (tiny_tester(tester={"shape": shape}) for shape in ("channel", "ring"))
-    decks = [study.case.bed_deck(study.beds["bed_1"]) for study in (channel, ring)]
+    decks = [study.case.bed_deck(study.beds["bed_plain"]) for study in (channel, ring)]
     assert decks[0]["velocity_m_per_s"] == decks[1]["velocity_m_per_s"]
     speed = decks[1]["angular_speed_rad_per_s"]
     assert speed == pytest.approx(math.radians(235.0), rel=ROUND_OFF)
@@ -135,10 +135,10 @@ def test_a_ring_turns_as_fast_as_a_channel_goes():
 def test_the_trough_is_closed_and_holds_the_bed(tmp_path):
     """Chords are no longer than an element; files are where decks read them."""
     study = tiny_tester(tester={"shape": "ring"})
-    mesh = tester_deck.trough_mesh(study.beds["bed_1"])
+    mesh = tester_deck.trough_mesh(study.beds["bed_plain"])
     edges = np.sort(edge_lengths_per_triangle(mesh.points, mesh.triangles), axis=1)
     assert edges[:, 1].max() <= tester_deck.TROUGH_ELEMENT * (1.0 + ROUND_OFF)
-    write_bed(study.case, study.beds["bed_1"], tmp_path)
+    write_bed(study.case, study.beds["bed_plain"], tmp_path)
     named = set(re.findall(r"file (\S+\.stl)", (tmp_path / "deck.in").read_text()))
     assert named == {"block.stl", "consolidator.stl", "trough.stl"}
     assert all((tmp_path / name).is_file() for name in named)
@@ -243,7 +243,7 @@ def test_the_poured_mass_is_that_of_a_level_bed(shape, scale):
     study = load_study(
         "circular_tester", overrides={"fidelity": "quick", "particle_scale": scale, "tester": {"shape": shape}}
     )
-    bed = study.beds["bed_1"]
+    bed = study.beds["bed_plain"]
     width, middle, turned = 0.21, 0.395, math.radians(66.0) if shape == "channel" else 2.0 * math.pi
     block = 0.1 * 0.1 * (0.01 + bed["headroom_m"])
     poured, particle = study.case.bed_deck(bed), bed["particle"]
@@ -261,8 +261,8 @@ def test_work_is_that_of_beds_and_runs():
     """Runs wait for their bed; steps are those of the decks; triangles are about those of the mesh."""
     study = tiny_tester()
     work = work_of(study)
-    assert [job.name for job in work] == ["settled_bed_bed_1", "worn_run_plain", "worn_run_convex"]
-    assert {job.needs for job in work[1:]} == {"settled_bed_bed_1"}
+    assert [job.name for job in work] == ["settled_bed_bed_plain", "worn_run_plain", "worn_run_convex"]
+    assert {job.needs for job in work[1:]} == {"settled_bed_bed_plain"}
     derived = study.run("plain").parameters["derived"]
     assert sum(stage.steps for stage in work[1].stages) == derived["run_in_steps"] + derived["travel_steps"]
     for run in ROWS:

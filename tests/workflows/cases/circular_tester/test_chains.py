@@ -214,7 +214,7 @@ def test_tables_are_made_of_the_runs(finished, tables):
         np.testing.assert_allclose(of_run["volume_m3"].iloc[1:], wear["total_applied_volume_m3"], rtol=1e-6)
         assert of_run["volume_m3"].iloc[0] == 0.0
     (bed,) = tables["beds"].to_dict("records")
-    assert bed["bed"] == "bed_1" and abs(bed["level_found_mm"] - 72.0) <= bed["level_tolerance_mm"] < 10.0
+    assert bed["bed"] == "bed_plain" and abs(bed["level_found_mm"] - 72.0) <= bed["level_tolerance_mm"] < 10.0
     compared = tables["comparison"]
     plain = compared[(compared["hours"] == 56) & (compared["quantity"] == "plain volume")]
     assert np.isnan(plain["ours"].iloc[0]) and "more than 2 times" in plain["note"].iloc[0]  # it is 5000 revolutions
@@ -250,7 +250,7 @@ def drawn(finished, tables):
     make_products(study, finished.root, ["volume_by_law", *names], REMARKS, AS_SOURCE)
     wear = [chain.folder / "wear.csv" for chain in finished.chains.values()]
     study.case.summary(folder / "design.csv", wear, [], []).to_csv(folder / "summary.csv", index=False)
-    jobs = [*(f"worn_run_{run}" for run in ROWS), "settled_bed_bed_1"]
+    jobs = [*(f"worn_run_{run}" for run in ROWS), "settled_bed_bed_plain"]
     pd.DataFrame({"job": jobs, "solver_s": 50.0}).to_csv(folder / "forecast.csv", index=False)
     return names
 

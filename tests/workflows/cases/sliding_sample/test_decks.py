@@ -236,8 +236,8 @@ def test_the_poured_mass_is_that_of_a_level_bed(ends, scale):
 def test_a_settled_bed_has_its_mass_and_level(tmp_path, ends):
     """The solver's bed is within its tolerances; asked for half the thickness, it is refused with both numbers."""
     study = tiny_study(bed={"ends": ends, "ahead_mm": 80})
-    bed = study.beds["bed_1"]
-    fill_bed(study.case, "bed_1", bed, tmp_path)
+    bed = study.beds["bed_R5"]
+    fill_bed(study.case, "bed_R5", bed, tmp_path)
     mass, level = study.case.bed_measures(bed, tmp_path / "log.liggghts")
     assert not mass.missed and not level.missed
     assert 0.0 < level.found - level.asked < 0.5 * bed["particle"]["median_diameter_m"]

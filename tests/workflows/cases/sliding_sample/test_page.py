@@ -49,8 +49,8 @@ def test_the_table_of_beds(page, study):
     """A row per bed with the settings that start from it; what was asked, found and allowed in the units of heads."""
     beds = embedded(page, f"{study.name}_beds.csv").set_index("bed")
     assert list(beds.index) == list(study.beds)
-    assert beds.loc["bed_1", "level_found_mm"] == pytest.approx(42.0, rel=RELATIVE)
-    assert beds.loc["bed_1", "mass_tolerance_kg"] == pytest.approx(0.02, rel=RELATIVE)
+    assert beds.loc["bed_R9", "level_found_mm"] == pytest.approx(42.0, rel=RELATIVE)
+    assert beds.loc["bed_R9", "mass_tolerance_kg"] == pytest.approx(0.02, rel=RELATIVE)
     assert {setting for cell in beds["settings"] for setting in cell.split(", ")} == set(study.setting_of.values())
 
 

@@ -117,7 +117,7 @@ def test_the_window_is_as_long_whatever_the_travel():
     face = decks(studies[0])[0][0]["face_m"]
     strip, clearance = window_lengths(studies[0].run("R9_convex").parameters["particle"])
     assert -0.02 - face - strip - EXCHANGE == pytest.approx(0.16)
-    assert face - studies[0].beds["bed_1"]["start_m"] == pytest.approx(clearance)
+    assert face - studies[0].beds["bed_R5"]["start_m"] == pytest.approx(clearance)
 
 
 def test_the_forecast_of_a_window_grows_with_the_travel_only():
