@@ -21,6 +21,7 @@ from bulkwear.workflows.engine.inputs import (
     SimulatedFrom,
     bed_digest,
     digest_of,
+    job_digest,
     simulated_from,
     surface_from,
     why_again,
@@ -352,7 +353,8 @@ def simulated_run(study, run):
     digest = digest_of(found)
     if not GIVEN.target_jobs and (why := why_again(Path(f"results/{study}/{run}"), found)):
         logger.info(f"{run} of {study} differs from what was simulated: {why}.")
-    return SimulatedFrom(parameters, digest), bed and SimulatedFrom(bed, digest)
+    asked = job_digest(case, parameters, digest)
+    return SimulatedFrom(parameters, asked), bed and SimulatedFrom(bed, digest)
 
 
 @cache

@@ -68,6 +68,16 @@ def digest_of(found: Mapping[str, Any]) -> str:
     return state.digest(found["settings"], *found["decks"])
 
 
+def job_digest(case: Case, parameters: Parameters, digest: str) -> str:
+    """Return the hash by which the job of a run is done again: that of `digest_of`, and how long the run is.
+
+    A longer run goes on from the cycles of the shorter one, which are the same; of a case whose cycles depend on the
+    length the hash has it already.
+    """
+    length = {f"{section}.{key}": parameters[section].get(key) for section, key in case.length}
+    return state.digest(digest, length) if length else digest
+
+
 def simulated_from(case: Case, parameters: Parameters, bed: Parameters | None) -> dict[str, Any]:
     """Return what a run is simulated from besides its surface and the restart file of its bed, JSON-able.
 

@@ -7,7 +7,7 @@ import pytest
 
 from bulkwear.workflows.cases.sliding_sample import case
 from bulkwear.workflows.engine import chain, inputs, templates
-from bulkwear.workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
+from bulkwear.workflows.engine.inputs import SimulatedFrom, bed_digest, job_digest, run_digest
 from tests.support.tiny import tiny_study
 from tests.support.tiny_tester import tiny_tester
 
@@ -68,6 +68,18 @@ def test_a_longer_run_of_the_tester_is_the_same_one():
     short, long = (tiny_tester(sliding={"revolutions": revolutions}) for revolutions in (2, 3))
     assert digest_of(short, "convex") == digest_of(long, "convex")
     assert digest_of(short, "convex", lambda run: run["tester"].update(incline_rad=0.1)) != digest_of(long, "convex")
+
+
+def test_a_longer_run_is_another_job():
+    """Finished cycles of a shorter run hold, and its job goes on from them; a sliding sample's hash is enough."""
+    jobs = {
+        job_digest(study.case, study.run("convex").parameters, digest_of(study, "convex"))
+        for study in (tiny_tester(sliding={"revolutions": revolutions}) for revolutions in (2, 3))
+    }
+    assert len(jobs) == 2
+    study = tiny_study()
+    digest = digest_of(study, "R9_convex")
+    assert job_digest(study.case, study.run("R9_convex").parameters, digest) == digest
 
 
 def test_jobs_compare_the_hash_and_get_the_values():
