@@ -74,6 +74,7 @@ class Touching {
   // Marks what is known of contacts as of the step before; all: of every particle.
   void begin(FixContactHistoryMesh* history, bool all) {
     all_ = all;
+    ++turn_;
     previous_.swap(particles_);
     particles_.clear();
     if (all) {
@@ -88,7 +89,13 @@ class Touching {
     }
   }
 
-  void add(int particle) { particles_.push_back(particle); }
+  // A large particle touches many triangles at once, and to go through its history takes as long as its list is.
+  void add(int particle) {
+    if (is_in(particle)) return;
+    if (last_turn_.size() <= static_cast<std::size_t>(particle)) last_turn_.resize(particle + 1, 0);
+    last_turn_[particle] = turn_;
+    particles_.push_back(particle);
+  }
 
   // Forgets contacts that are over.
   void end(FixContactHistoryMesh* history) {
@@ -96,13 +103,21 @@ class Touching {
       history->cleanUpContacts();
       return;
     }
-    for (const std::vector<int>* of : {&previous_, &particles_})
-      for (const int particle : *of) history->cleanUpContacts(particle, particle + 1);
+    for (const int particle : particles_) history->cleanUpContacts(particle, particle + 1);
+    for (const int particle : previous_)
+      if (!is_in(particle)) history->cleanUpContacts(particle, particle + 1);
   }
 
  private:
+  // Whether a particle has a contact in this step.
+  bool is_in(int particle) const {
+    return static_cast<std::size_t>(particle) < last_turn_.size() && last_turn_[particle] == turn_;
+  }
+
   bool all_ = true;
-  std::vector<int> particles_, previous_;  // with contacts in this step and the one before; some more than once
+  std::uint64_t turn_ = 0;
+  std::vector<std::uint64_t> last_turn_;   // by particle: the last step in which it had a contact
+  std::vector<int> particles_, previous_;  // with contacts in this step and the one before
 };
 
 struct Search {
