@@ -33,7 +33,7 @@ from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, run_deck
 PARTICLE_SCALE = 2.0  # of the demo at its quick fidelity
 STRIDES = (1, 5, 10, 50, 100)  # steps between two samples
 BLOCKS = 10  # windows into which the travel is cut, for the error of a short one
-RESET_LINE = re.compile(r"^reset_timestep ", re.MULTILINE)
+RESET_LINE = re.compile(r'^if .* "reset_timestep 0"', re.MULTILINE)
 LEDGER_LINE = f"fix load_ledger all load/ledger mesh sample_1 file {LOAD_LEDGER}\n\n"
 
 
@@ -72,6 +72,36 @@ def sampled_work(folder: Path, chain, triangles: int, strides, blocks: int) -> d
     }
 
 
+def sampling_errors(
+    sampled: Mapping[int, np.ndarray], exact: np.ndarray, dump_bytes: int, ledger_bytes: int
+) -> pd.DataFrame:
+    """Return one row per stride: errors of the sliding work, relative, and the disk that each way takes.
+
+    sampled: {stride in steps: (windows, m) sliding work in J per window of the travel and triangle}, with stride 1
+    exact: (m,) sliding work in J of the whole travel, summed in the solver
+    dump_bytes, ledger_bytes: what the dumps at stride 1, and the solver's ledger, take
+
+    total_error: of the sum over all triangles and windows, against `exact`
+    short_window_error: root mean square over the windows of the error of a window's sum, against stride 1
+    map_error: sum over triangles of the error's magnitude over the total, against `exact`
+    """
+    every_window = sampled[1].sum(axis=1)
+    rows = []
+    for stride, work in sampled.items():
+        short = work.sum(axis=1) / every_window - 1.0
+        rows.append(
+            {
+                "stride_steps": stride,
+                "total_error": abs(work.sum() / exact.sum() - 1.0),
+                "short_window_error": float(np.sqrt(np.mean(short**2))),
+                "map_error": float(np.abs(work.sum(axis=0) - exact).sum() / exact.sum()),
+                "dumps_MB": dump_bytes / stride / 1e6,
+                "solver_ledger_MB": ledger_bytes / 1e6,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/sampling_error"))
@@ -101,33 +131,3 @@ def main() -> None:
 
 if __name__ == "__main__":
     main()
-
-
-def sampling_errors(
-    sampled: Mapping[int, np.ndarray], exact: np.ndarray, dump_bytes: int, ledger_bytes: int
-) -> pd.DataFrame:
-    """Return one row per stride: errors of the sliding work, relative, and the disk that each way takes.
-
-    sampled: {stride in steps: (windows, m) sliding work in J per window of the travel and triangle}, with stride 1
-    exact: (m,) sliding work in J of the whole travel, summed in the solver
-    dump_bytes, ledger_bytes: what the dumps at stride 1, and the solver's ledger, take
-
-    total_error: of the sum over all triangles and windows, against `exact`
-    short_window_error: root mean square over the windows of the error of a window's sum, against stride 1
-    map_error: sum over triangles of the error's magnitude over the total, against `exact`
-    """
-    every_window = sampled[1].sum(axis=1)
-    rows = []
-    for stride, work in sampled.items():
-        short = work.sum(axis=1) / every_window - 1.0
-        rows.append(
-            {
-                "stride_steps": stride,
-                "total_error": abs(work.sum() / exact.sum() - 1.0),
-                "short_window_error": float(np.sqrt(np.mean(short**2))),
-                "map_error": float(np.abs(work.sum(axis=0) - exact).sum() / exact.sum()),
-                "dumps_MB": dump_bytes / stride / 1e6,
-                "solver_ledger_MB": ledger_bytes / 1e6,
-            }
-        )
-    return pd.DataFrame(rows)

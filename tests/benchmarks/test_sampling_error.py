@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from benchmarks.sampling_error import sampling_errors
+from benchmarks.sampling_error import LEDGER_LINE, deck_of_both, sampling_errors, with_whole_windows
+from bulkwear.workflows.engine.chain import Chain
+from tests.support.tiny import tiny_study
 
 EXACT = np.array([6.0, 2.0, 0.0])  # J per triangle
 ROUNDING = 1e-12  # relative; the sums have a handful of terms
@@ -39,3 +41,12 @@ def test_dumps_shrink_with_the_stride_and_the_ledger_does_not(errors):
     """Disk of the dumps goes with one over the stride; the solver's file has one size."""
     assert errors.loc[5, "dumps_MB"] == pytest.approx(errors.loc[1, "dumps_MB"] / 5, rel=ROUNDING)
     assert errors["solver_ledger_MB"].nunique() == 1
+
+
+def test_the_deck_has_both_ledgers(tmp_path):
+    """It dumps the contacts of every step, and the solver's own ledger begins before steps count from 0."""
+    study = tiny_study()
+    run, bed = study.run("R9_convex").parameters, next(iter(study.beds.values()))
+    chain = Chain("R9_convex", tmp_path, study.case, run, tmp_path / "surface.vtu", bed, tmp_path / "bed.restart")
+    before, after = deck_of_both(with_whole_windows(chain)).split(LEDGER_LINE)
+    assert "contacts.dump" in after and "reset_timestep 0" in after and "reset_timestep 0" not in before
