@@ -1,6 +1,7 @@
 """The simulation of a long cycle in pieces, each from the restart file that the one before left.
 
 A piece is a start of the solver on the cycle's one deck, told where to begin and to stop; the last one ends the cycle.
+Most cycles are one piece, which is told nothing.
 They are the same pieces whether a run is killed or not: a run that is taken up within a cycle is the undisturbed one.
 What is finished stands in `pieces.json`. It, the logs of the pieces and the newest restart file stay until the
 cycle is accounted and its state written, so that a fault on the way there costs no simulation.
@@ -67,10 +68,8 @@ def simulate_in_pieces(
         check_end(folder, end)
         check_restart(folder / (RESTART if end == ends[-1] else CHECKPOINT))
         done.append(Piece(end, wall, processor_seconds() - before))
-        if len(ends) > 1:
-            _keep(folder, origin, done)
-    if len(ends) > 1:
-        _join(folder, len(ends))
+        _keep(folder, origin, done)
+    _join(folder, len(ends))
     return done
 
 

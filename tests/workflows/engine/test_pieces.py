@@ -88,24 +88,36 @@ def test_a_torn_list_of_pieces_is_none(tmp_path, text):
     assert finished_pieces(tmp_path, "inputs") == []
 
 
+class OnePiece(Solver):
+    """Writes what a cycle of 40 steps writes, or ends before."""
+
+    def __call__(self, variables):
+        self.calls.append(variables)
+        for name in (LOG, SCREEN):
+            (self.folder / name).write_text(f"{self.fails_at or 40} 1.0\n")
+        return 1.0
+
+
 def test_a_short_cycle_is_one_piece_that_is_told_nothing(tmp_path):
-    """A cycle below the interval runs as its deck stands."""
-    (tmp_path / SCREEN).write_text("40 1.0\n")
-    calls = []
-    checked_pieces(tmp_path, "inputs", [40], lambda variables: calls.append(variables) or 1.0)
-    assert calls == [{}]
-    assert [path.name for path in tmp_path.iterdir()] == [SCREEN]
+    """A cycle below the interval runs as its deck stands, once: until it is accounted it counts as simulated."""
+    solver = OnePiece(tmp_path)
+    done = checked_pieces(tmp_path, "inputs", [40], solver)
+    assert solver.calls == [{}]
+    repeated = checked_pieces(tmp_path, "inputs", [40], lambda variables: pytest.fail("the solver was started"))
+    assert repeated == done == finished_pieces(tmp_path, "inputs")
+    forget_pieces(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {LOG, SCREEN}
 
 
 def test_a_solver_that_was_asked_to_end_has_finished_no_piece(tmp_path):
     """LIGGGHTS ends well when it is asked to end; its step tells, and the restart file that it leaves is nobody's."""
-    (tmp_path / SCREEN).write_text("39 1.0\n")
     with pytest.raises(SolverError, match=r"screen.txt: LIGGGHTS ended at step 39, allowed is 40; it was asked to end"):
-        checked_pieces(tmp_path, "inputs", [40], lambda variables: 1.0)
+        checked_pieces(tmp_path, "inputs", [40], OnePiece(tmp_path, 39))
     (tmp_path / "restart_forced_39").touch()
-    (tmp_path / SCREEN).write_text("40 1.0\n")
-    checked_pieces(tmp_path, "inputs", [40], lambda variables: 1.0)
-    assert [path.name for path in tmp_path.iterdir()] == [SCREEN]
+    assert finished_pieces(tmp_path, "inputs") == []
+    checked_pieces(tmp_path, "inputs", [40], OnePiece(tmp_path))
+    forget_pieces(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {LOG, SCREEN}
 
 
 def test_a_piece_whose_restart_file_is_not_whole_is_not_finished(tmp_path):

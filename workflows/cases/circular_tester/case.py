@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bulkwear.meshes.tester import placed, sample_block
-from bulkwear.postproc.mesh import PLAIN, SurfaceMesh
+from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.readers.cycle_folders import LAYER_TABLE
 from bulkwear.postproc.readers.solver_log import thermo_rows, thermo_table
 from bulkwear.postproc.wear.caps import GRAVITY, gap_closing_step
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester import work as tester_work
-from bulkwear.workflows.cases.circular_tester.checks import TESTER_CHECKS
+from bulkwear.workflows.cases.circular_tester.checks import TESTER_CHECKS, design_fault
 from bulkwear.workflows.cases.circular_tester.parameters import bed_parameters, run_parameters
 from bulkwear.workflows.config.patterns import dimension_columns, option_keys, pattern_of, surface_name
 from bulkwear.workflows.engine.case import SETUP_BED, SETUP_LOADS, Parameters, Piece, Run, register
@@ -31,9 +31,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from bulkwear.workflows.engine.beds import BedMeasure
-
-
-VOLUME, VARIED = "volume", "varied"  # series of the design
 
 
 class CircularTester(SampleCase):
@@ -67,21 +64,8 @@ class CircularTester(SampleCase):
         return [*dimension_columns(named), *option_keys(named)]
 
     def design_fault(self, rows: Sequence[Mapping[str, Any]]) -> str | None:
-        """Return a phrase unless one plain and one patterned row are of series volume, of which most figures are made,
-        in equal machines with equal particles, and where seeds differ: a packing is one bed for all rows of a machine
-        and particle scale.
-        """
-        seeds = [str(seed) for seed in dict.fromkeys(row.get("seed", "none") for row in rows)]
-        if len(seeds) > 1:
-            return f"seed is {', '.join(seeds)}, allowed is one for all rows; further packings are added by packings"
-        main = [row for row in rows if row["series"] == VOLUME]
-        found = sorted(row["surface"] for row in main)
-        if len(found) == 2 and found.count(PLAIN) == 1:
-            apart = [name for name in ("shape", "particle_scale") if main[0].get(name) != main[1].get(name)]
-            if apart:
-                return f"rows of series {VOLUME} differ in {' and '.join(apart)}, allowed are equal ones"
-            return _varied_fault([row for row in rows if row["series"] == VARIED])
-        return f"series {VOLUME} has {' and '.join(found) or 'no row'}, allowed is one patterned and one plain row"
+        """Return a phrase unless figures can be made of the rows."""
+        return design_fault(rows)
 
     def run_parameters(
         self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str
@@ -263,22 +247,6 @@ class CircularTester(SampleCase):
 
 
 register(CircularTester())
-
-
-def _varied_fault(rows: Sequence[Mapping[str, Any]]) -> str | None:
-    """Return a phrase unless rows of series varied are pairs by name, alike in all but row and surface."""
-    of_pair: dict[str, list[Mapping[str, Any]]] = {}
-    for row in rows:
-        of_pair.setdefault(row.get("pair") or "", []).append(row)
-    for name, pair in of_pair.items():
-        surfaces = sorted(row["surface"] for row in pair)
-        if not name or len(pair) != 2 or surfaces.count(PLAIN) != 1:
-            what = f"pair {name}" if name else f"no pair in row {pair[0]['row']}"
-            return f"series {VARIED} has {what} with {' and '.join(surfaces)}, allowed is a patterned and a plain row"
-        apart = [key for key in pair[0] if key not in ("row", "surface") and pair[0].get(key) != pair[1].get(key)]
-        if apart:
-            return f"rows of pair {name} differ in {' and '.join(apart)}, allowed are row and surface"
-    return None
 
 
 def revolution(parameters: Parameters, steps: Any) -> Any:

@@ -1,10 +1,14 @@
-"""Checks of one run of the circular wear tester, before any solver starts."""
+"""Checks of the circular wear tester, before any solver starts: of one run, and of the rows of a design."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
+from typing import Any
 
+from bulkwear.postproc.mesh import PLAIN
 from bulkwear.workflows.cases.circular_tester.decks import CHANNEL, channel_length, half_width, mean_radius
+from bulkwear.workflows.config.patterns import dimension_columns
 from bulkwear.workflows.config.run_checks import (
     CheckedRun,
     Fault,
@@ -17,6 +21,8 @@ from bulkwear.workflows.config.run_checks import (
 )
 from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
+VOLUME, VARIED = "volume", "varied"  # series of the design
+ALONE = ("row", "surface")  # columns in which the rows of a pair differ
 LEAST_LAYERS = 3.0  # of particles over the sample and under it: fewer are no bed
 LEVEL_DIAMETERS = 0.5  # -, of bed and consolidator apart, in median diameters: the plate cuts no layer off, misses none
 SIDE_DIAMETERS = 2.0  # -, room between sample and side walls, in largest diameters: particles pass there without a jam
@@ -157,3 +163,47 @@ TESTER_CHECKS = (
     cycle_long_enough,
     physical_modulus_known,
 )
+
+
+def design_fault(rows: Sequence[Mapping[str, Any]]) -> str | None:
+    """Return a phrase unless one plain and one patterned row are of series volume, of which most figures are made, in
+    equal machines with equal particles, and where seeds differ: a packing is one bed for all rows of a machine and
+    particle scale.
+    """
+    seeds = [str(seed) for seed in dict.fromkeys(row.get("seed", "none") for row in rows)]
+    if len(seeds) > 1:
+        return f"seed is {', '.join(seeds)}, allowed is one for all rows; further packings are added by packings"
+    main = [row for row in rows if row["series"] == VOLUME]
+    if not _is_pair(main):
+        found = " and ".join(sorted(row["surface"] for row in main)) or "no row"
+        return f"series {VOLUME} has {found}, allowed is one patterned and one plain row"
+    if apart := _apart(main):
+        return f"rows of series {VOLUME} differ in {' and '.join(apart)}, allowed are row, surface and pattern"
+    return _varied_fault([row for row in rows if row["series"] == VARIED])
+
+
+def _varied_fault(rows: Sequence[Mapping[str, Any]]) -> str | None:
+    """Return a phrase unless rows of series varied are pairs by name, alike in all but row, surface and pattern."""
+    of_pair: dict[str, list[Mapping[str, Any]]] = {}
+    for row in rows:
+        of_pair.setdefault(row.get("pair") or "", []).append(row)
+    for name, pair in of_pair.items():
+        if not name or not _is_pair(pair):
+            what = f"pair {name}" if name else f"no pair in row {pair[0]['row']}"
+            surfaces = " and ".join(sorted(row["surface"] for row in pair))
+            return f"series {VARIED} has {what} with {surfaces}, allowed is a patterned and a plain row"
+        if apart := _apart(pair):
+            return f"rows of pair {name} differ in {' and '.join(apart)}, allowed are row, surface and pattern"
+    return None
+
+
+def _is_pair(rows: Sequence[Mapping[str, Any]]) -> bool:
+    return len(rows) == 2 and [row["surface"] for row in rows].count(PLAIN) == 1
+
+
+def _apart(pair: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return the columns in which the rows of a pair differ besides those that they may differ in."""
+    own = {column for row in pair for column in dimension_columns(row["surface"])}
+    allowed = {*ALONE, *own, *(f"pattern.{column}" for column in own)}
+    columns = dict.fromkeys(key for row in pair for key in row)
+    return [key for key in columns if key not in allowed and pair[0].get(key) != pair[1].get(key)]

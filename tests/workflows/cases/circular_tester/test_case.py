@@ -221,8 +221,13 @@ def test_a_design_needs_a_pair_of_one_particle_scale():
     assert "series volume" in case.design_fault(rows)
     rows[1]["series"] = "volume"
     assert case.design_fault(rows) is None
+    rows[0]["height_mm"] = 4.0  # of the pattern's
+    assert case.design_fault(rows) is None
+    rows[1]["tester.depth_mm"] = 80.0
+    assert "rows of series volume differ in tester.depth_mm, allowed are" in case.design_fault(rows)
+    rows[0] |= {"tester.depth_mm": 80.0}
     rows[1]["particle_scale"] = 4
-    assert "differ in particle_scale, allowed are equal ones" in case.design_fault(rows)
+    assert "differ in particle_scale, allowed are row, surface and pattern" in case.design_fault(rows)
 
 
 def test_rows_of_a_design_have_one_seed():

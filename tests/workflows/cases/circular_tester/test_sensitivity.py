@@ -186,7 +186,10 @@ def test_the_figure_shows_every_value_and_setting(table, settings):
         ({"pair": "b"}, "series varied has pair a with plain, allowed is a patterned and a plain row"),
         ({"pair": None}, "series varied has pair a with plain, allowed is a patterned and a plain row"),
         ({"surface": "plain"}, "series varied has pair a with plain and plain, allowed is a patterned and a plain row"),
-        ({"thickness_mm": 3.0}, "rows of pair a differ in thickness_mm, allowed are row and surface"),
+        (
+            {"thickness_mm": 3.0},
+            "rows of pair a differ in thickness_mm, allowed are row, surface and pattern",
+        ),
     ],
 )
 def test_pairs_are_alike(change, said):
