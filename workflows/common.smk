@@ -3,11 +3,13 @@
 import itertools
 import sys
 from dataclasses import asdict  # of params: Snakemake does not see that an object of a class of ours has changed
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 from snakemake.cli import get_argument_parser
 from snakemake.exceptions import WorkflowError
+from snakemake.io import IOFile
+from snakemake.settings.types import RerunTrigger
 from snakemake.utils import min_version
 
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
@@ -22,6 +24,9 @@ from bulkwear.workflows.engine.inputs import (
     bed_digest,
     digest_of,
     job_digest,
+    other_bed,
+    other_inputs,
+    other_length,
     simulated_from,
     surface_from,
     why_again,
@@ -371,6 +376,42 @@ def bed_restart_of_run(folder):
         return [f"results/{wildcards.study}/{folder}/{bed}/bed.restart"] if bed else []
 
     return paths
+
+
+def surface_of_run(wildcards):
+    """The surface of a run. Raises WorkflowError where the run, or its bed, was made from something else and Snakemake,
+    which compares but times of files then, has no record of it: as of results that were copied without .snakemake.
+    """
+    study, run = wildcards.study, wildcards.run
+    folder, bed = Path("results") / study, STUDIES[study].bed_of(run)
+    check_made_from_this("worn_run", folder / run / "wear.csv", partial(other_run, study, run))
+    if bed:
+        filled = partial(other_bed, folder / "beds" / bed, STUDIES[study].case, STUDIES[study].beds[bed])
+        check_made_from_this("settled_bed", folder / "beds" / bed / "cost.csv", filled)
+    return [str(folder / run / "surface.vtu")]
+
+
+def other_run(study, run):
+    """From what else a run was simulated."""
+    case, parameters = STUDIES[study].case, STUDIES[study].run(run).parameters
+    found = simulated_from(case, parameters, STUDIES[study].beds.get(STUDIES[study].bed_of(run)))
+    folder = Path("results") / study / run
+    return other_inputs(folder, found) or other_length(folder, case, parameters)
+
+
+def check_made_from_this(rule, made, other):
+    """Raise WorkflowError for a file that exists, of which Snakemake has no record, and that was made otherwise."""
+    if GIVEN.target_jobs or GIVEN.touch or GIVEN.forceall or RerunTrigger.PARAMS not in workflow.rerun_triggers:
+        return
+    if any(NAMING.ours(name) == rule for name in GIVEN.forcerun or ()) or not made.exists():
+        return
+    if workflow.persistence.metadata(IOFile(str(made))) is None and (why := other()):
+        raise WorkflowError(
+            f"{made.parent} was made from something else"
+            + ("" if why is True else f": {why}")
+            + ", and there is no record of Snakemake (.snakemake) by which it would be made again; add"
+            " --forcerun settled_bed worn_run, which keeps what still holds, or take another folder."
+        )
 
 
 def same_run(wildcards):

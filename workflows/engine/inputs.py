@@ -15,14 +15,15 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
+from bulkwear.postproc.readers.cycle_folders import cycle_folders
 from bulkwear.postproc.wear import WEAR_VERSION
 from bulkwear.postproc.wear.kernel_sums import kernel_sums
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Case, Parameters
-from bulkwear.workflows.engine.chain import Chain, write_bed
+from bulkwear.workflows.engine.chain import DECK, WORN_THROUGH, Chain, bed_deck_text, write_bed
 from bulkwear.workflows.engine.derived import laws_beside
 from bulkwear.workflows.engine.own_code import code_of_case, code_of_law
-from bulkwear.workflows.engine.schedule import first_span
+from bulkwear.workflows.engine.schedule import first_span, known_spans
 from bulkwear.workflows.engine.worn_pair import BESIDE
 
 DERIVED = (
@@ -112,6 +113,38 @@ def _simulated(case: Case, section: str, values: Any) -> Any:
         return values
     left_out = {key for name, key in case.length if name == section} | set(case.only_told)
     return {key: _simulated(case, section, value) for key, value in values.items() if key not in left_out}
+
+
+def other_inputs(run_folder: Path, found: Mapping[str, Any]) -> str | None:
+    """Return in a phrase from what else a finished run was simulated; None where its cycles hold, or nothing is known.
+
+    found: as from `simulated_from`; keys that came with a newer version and change no deck are none
+    """
+    try:
+        before = json.loads((state.cycle_folder(run_folder, 0) / SIMULATED_FROM).read_text())
+        if digest_of(before) == digest_of(json.loads(json.dumps(found))):
+            return None
+    except (OSError, ValueError, KeyError):
+        return None
+    return why_again(run_folder, found)
+
+
+def other_length(run_folder: Path, case: Case, parameters: Parameters) -> str | None:
+    """Return in a phrase how many cycles a finished run has where another number is asked for; None where it has them,
+    of one that ended as it was worn through, and of a case whose cycles themselves depend on how long it is.
+    """
+    if not case.length:
+        return None
+    asked, there = len(known_spans(parameters)), len(cycle_folders(run_folder)) - 1
+    if asked == there or (there > 0 and state.read_state(run_folder, there).get(WORN_THROUGH)):
+        return None
+    return f"{asked} wear cycles are asked for, it has {there}"
+
+
+def other_bed(bed_folder: Path, case: Case, bed: Parameters) -> bool:
+    """Return whether a filled bed was filled by another deck."""
+    filled = bed_folder / DECK
+    return filled.is_file() and filled.read_text(encoding="utf-8") != bed_deck_text(case, bed)
 
 
 def why_again(run_folder: Path, found: Mapping[str, Any]) -> str | None:

@@ -47,7 +47,7 @@ rule settled_bed:
 
 rule worn_run:
     input:
-        surface="results/{study}/{run}/surface.vtu",
+        surface=surface_of_run,
         bed=bed_restart_of_run("beds"),
         same=same_run,
     output:

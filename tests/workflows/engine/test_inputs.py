@@ -2,12 +2,15 @@
 
 import copy
 import pickle
+import shutil
 
 import pytest
 
 from bulkwear.workflows.cases.sliding_sample import case
 from bulkwear.workflows.engine import chain, inputs, templates
-from bulkwear.workflows.engine.inputs import SimulatedFrom, bed_digest, job_digest, run_digest
+from bulkwear.workflows.engine.inputs import SimulatedFrom, bed_digest, job_digest, other_length, run_digest
+from bulkwear.workflows.engine.schedule import known_spans
+from bulkwear.workflows.engine.state import STATE, cycle_folder
 from tests.support.tiny import tiny_study
 from tests.support.tiny_tester import tiny_tester
 
@@ -80,6 +83,24 @@ def test_a_longer_run_is_another_job():
     study = tiny_study()
     digest = digest_of(study, "R9_convex")
     assert job_digest(study.case, study.run("R9_convex").parameters, digest) == digest
+
+
+def test_a_run_of_another_length_is_told(tmp_path):
+    """Unless it ended as it was worn through; of a sliding sample the hash tells."""
+    study = tiny_tester(sliding={"revolutions": 2})
+    parameters = study.run("convex").parameters
+    asked = len(known_spans(parameters))
+    for cycle in range(asked):
+        cycle_folder(tmp_path, cycle).mkdir()
+        (cycle_folder(tmp_path, cycle) / STATE).write_text("{}")
+    assert other_length(tmp_path, study.case, parameters) == f"{asked} wear cycles are asked for, it has {asked - 1}"
+    state = cycle_folder(tmp_path, asked - 1) / STATE
+    state.write_text('{"worn_through": "in the middle"}')
+    assert other_length(tmp_path, study.case, parameters) is None
+    shutil.copytree(cycle_folder(tmp_path, 0), cycle_folder(tmp_path, asked))
+    assert other_length(tmp_path, study.case, parameters) is None
+    sliding = tiny_study()
+    assert other_length(tmp_path, sliding.case, sliding.run("R9_convex").parameters) is None
 
 
 def test_jobs_compare_the_hash_and_get_the_values():
