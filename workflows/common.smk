@@ -388,7 +388,7 @@ def surface_of_run(wildcards):
     if bed:
         filled = partial(other_bed, folder / "beds" / bed, STUDIES[study].case, STUDIES[study].beds[bed])
         check_made_from_this("settled_bed", folder / "beds" / bed / "cost.csv", filled)
-    return [str(folder / run / "surface.vtu")]
+    return str(folder / run / "surface.vtu")
 
 
 def other_run(study, run):
