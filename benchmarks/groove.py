@@ -4,7 +4,7 @@
     python -m benchmarks.groove --output docs --redraw
 
 Writes groove_strokes.csv (every stroke), groove_sections.csv, groove_convergence.csv and .png; `--redraw` makes the
-last two from the first two. Takes some minutes of one core.
+last two from the first two. Takes a quarter of an hour of one core.
 """
 
 from __future__ import annotations
