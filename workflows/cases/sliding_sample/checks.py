@@ -7,6 +7,7 @@ import math
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.sliding_sample.parameters import THIN_BED_LAYERS
 from bulkwear.workflows.cases.sliding_sample.shape import clumps_stay_whole
+from bulkwear.workflows.cases.sliding_sample.study import PARTICLE_SCALE
 from bulkwear.workflows.config.optimise import OPTIMISE
 from bulkwear.workflows.config.patterns import highest_point, pattern_of
 from bulkwear.workflows.config.run_checks import (
@@ -24,8 +25,16 @@ from bulkwear.workflows.engine.derived import ADAPTIVE, PERIODIC, ROUNDING, WIND
 from bulkwear.workflows.engine.grains import smallest_radius
 from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
+PACKING = "packing"  # block of settings, of containers
 TINY_FRICTION = 1e-3  # -, of a floor that drives nothing
 LARGEST_TRAVEL = 100.0  # m, as the schema has it for sliding.travel_mm
+
+
+def containers_given(run: CheckedRun) -> Fault | None:
+    """Where rows give their particle scale, settings say in what containers packings are compared."""
+    if PARTICLE_SCALE not in run.row.values or PACKING in run.settings:
+        return None
+    return PACKING, "a block of keys, as in config/studies/particle_size.yaml, where rows give particle_scale"
 
 
 def sample_in_bed(run: CheckedRun) -> Fault | None:
@@ -199,6 +208,7 @@ def _least_travel(run: CheckedRun) -> float:
 
 
 SLIDING_CHECKS: tuple[Check, ...] = (
+    containers_given,
     enough_layers,
     pattern_in_bed,
     pattern_fits,

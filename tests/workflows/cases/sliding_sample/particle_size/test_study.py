@@ -1,5 +1,6 @@
 """The study of particle size: scales as rows of one pattern, and what is told of it."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -84,3 +85,20 @@ def test_its_page_can_print_every_setting(fidelity):
     tables = setting_rows(parameters["settings"], parameters["paper_settings"])
     printed = {row["name"]: number(row["value"]) for rows in tables.values() for row in rows}
     assert printed and all(isinstance(text, str) for text in printed.values())
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("", "packing is missing for row R9, allowed is a block of keys, as in config/studies/particle_size.yaml"),
+        ("packing: {every_scale: false}\n", "packing.width_diameters is missing, allowed is a number from 4 to 200"),
+    ],
+)
+def test_containers_are_whole(config, given, said):
+    """Rows that give their particle scale are compared as packings in containers too, of which nothing is assumed."""
+    header, *rows = config.path("designs/small.csv").read_text(encoding="utf-8").splitlines()
+    lines = [f"{header},particle_scale", *(f"{row},6" for row in rows)]
+    config.write("designs/small.csv", "\n".join(lines) + "\n")
+    config.write("studies/small.yaml", config.path("studies/small.yaml").read_text(encoding="utf-8") + given)
+    with pytest.raises(ConfigError, match=re.escape(said)):
+        load_study("small", config.project)
