@@ -70,7 +70,9 @@ def check_hardness(layers: tuple[Layer, ...], case: Case, settings: Mapping[str,
     settings: as from `with_coefficients`
     """
     for pair in case.worn_pairs(settings):
-        block = reduce(dict.__getitem__, pair.block, settings)
+        own, shared = _given(reduce(dict.__getitem__, pair.block, settings)), _given(settings[WEAR])
+        # a shared k that could be completed stands in the part's block
+        block = own or {key: shared[key] for key in shared if key == DIMENSIONLESS}
         if DIMENSIONLESS in block and PER_PA not in block:
             path = (*pair.block, DIMENSIONLESS)
             path = path if any(layer.holds(path) for layer in layers) else (WEAR, DIMENSIONLESS)

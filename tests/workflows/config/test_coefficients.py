@@ -202,3 +202,11 @@ def test_the_coefficient_of_a_part_is_refused_as_that_of_the_section(tmp_path):
     ):
         with pytest.raises(ConfigError, match=said):
             parts_of(tmp_path, parts={"liner": given})
+
+
+@pytest.mark.parametrize("parts", [{}, {"parts": {"impact_plate": {"material": "mild_steel"}}}])
+def test_a_shared_k_needs_the_hardness_of_every_part(parts):
+    """Of parts without a coefficient of their own, also where another part's hardness is known."""
+    said = r"wear.wear_coefficient_k is 0.001, allowed is .* hardness_pa of the wall steel"
+    with pytest.raises(ConfigError, match=said):
+        load_study("chute", overrides={"wear": {"wear_coefficient_k": K}, **parts})
