@@ -9,8 +9,9 @@ from __future__ import annotations
 import os
 from collections.abc import Collection
 
+from bulkwear.postproc.readers.cycle_folders import cycle_folders
 from bulkwear.workflows.config.design import Study
-from bulkwear.workflows.engine.disk import free_bytes
+from bulkwear.workflows.engine.disk import folder_bytes, free_bytes
 from bulkwear.workflows.engine.machine import machine_facts
 from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.engine.work import Work
@@ -37,8 +38,18 @@ def fault_here(study: Study, jobs: Collection[str], meshed: Collection[str]) -> 
     except RatesError:
         return None
     cores, memory_gb = os.cpu_count() or 1, machine_facts()["memory_gb"]
-    free_gb = free_bytes(current_project().folder) / GIGABYTE
+    free_gb = free_bytes(current_project().folder) / GIGABYTE + held_gb(study, jobs)
     return fault_of_machine(study, jobs, meshed, rates, cores, memory_gb, free_gb)
+
+
+def held_gb(study: Study, jobs: Collection[str]) -> float:
+    """Return what an interrupted start has left of those jobs already, GB, of each at most what it will have."""
+    results = current_project().folder / "results" / study.name
+    folders = {f"settled_bed_{bed}": [results / "beds" / bed] for bed in study.beds}
+    folders |= {f"worn_run_{run.name}": cycle_folders(results / run.name) for run in study.runs}
+    foreseen = {job.name: job.disk_bytes for job in work_of(study) if job.name in jobs}
+    held = {name: sum(map(folder_bytes, folders.get(name, ()))) for name in foreseen}
+    return sum(min(held[name], foreseen[name]) for name in foreseen) / GIGABYTE
 
 
 def fault_of_machine(

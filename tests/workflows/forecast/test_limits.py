@@ -3,10 +3,12 @@
 import pytest
 
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.forecast.forecast import work_of
-from bulkwear.workflows.forecast.limits import ALLOWED, fault_here, fault_of_machine
+from bulkwear.workflows.engine.project import Project
+from bulkwear.workflows.forecast.forecast import GIGABYTE, work_of
+from bulkwear.workflows.forecast.limits import ALLOWED, fault_here, fault_of_machine, held_gb
 from bulkwear.workflows.forecast.rates import rates_file, read_rates
 
+ROUNDING = 1e-12  # relative
 PLAIN = {"fidelity": "quick"}
 HUGE = {  # settings -> what is said of them on a small machine
     "fine elements": (
@@ -50,6 +52,24 @@ def test_what_exceeds_the_machine_is_refused(what):
 def test_a_small_machine_refuses_a_small_study(machine, said):
     """Memory and disk are those of the machine and its forecast."""
     assert said in fault(load_study("demo", overrides=PLAIN), **machine)
+
+
+def test_what_an_interrupted_start_left_needs_no_room_again(tmp_path, monkeypatch):
+    """Finished cycles and a filled bed of jobs that go on count, of each no more than it is to have."""
+    monkeypatch.setattr("bulkwear.workflows.forecast.limits.current_project", lambda: Project(tmp_path))
+    study = load_study("demo", overrides=PLAIN)
+    run, work = study.runs[0].name, {job.name: job for job in work_of(study)}
+    bed, worn = f"settled_bed_{study.bed_of(run)}", f"worn_run_{run}"
+    assert held_gb(study, work) == 0.0
+    results = tmp_path / "results" / "demo"
+    for folder, count in ((results / run / "cycle_000", 1000), (results / "beds" / study.bed_of(run), 10**7)):
+        folder.mkdir(parents=True)
+        (folder / "a").write_bytes(bytes(count))
+    (results / run / "superseded").mkdir()
+    (results / run / "superseded" / "a").write_bytes(bytes(5000))
+    assert work[bed].disk_bytes < 10**7
+    assert held_gb(study, [bed, worn]) * GIGABYTE == pytest.approx(1000 + work[bed].disk_bytes, rel=ROUNDING)
+    assert held_gb(study, [worn]) * GIGABYTE == pytest.approx(1000, rel=ROUNDING)
 
 
 def test_more_than_a_year_is_refused(monkeypatch):
