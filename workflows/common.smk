@@ -508,7 +508,7 @@ def demands_of(study):
 
 
 def asked(rule, measure):
-    """A resource function: what jobs of a rule ask a cluster for, more at every attempt; measure 0 is min, 1 is MB."""
+    """A resource function: a demand of jobs of a rule, more at every attempt; measure 0 is min, 1 is MB, 2 is core min."""
 
     def amount(wildcards, attempt):
         words = dict(wildcards.items())

@@ -33,6 +33,7 @@ rule settled_bed:
     resources:
         runtime=asked("settled_bed", 0),
         mem_mb=asked("settled_bed", 1),
+        step_core_min=asked("settled_bed", 2),
         tasks=ranks_of,
         cpus_per_task=1,
         mpi=launcher_of,
@@ -62,6 +63,7 @@ rule worn_run:
     resources:
         runtime=asked("worn_run", 0),
         mem_mb=asked("worn_run", 1),
+        step_core_min=asked("worn_run", 2),
         tasks=ranks_of,
         cpus_per_task=1,
         mpi=launcher_of,

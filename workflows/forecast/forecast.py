@@ -27,7 +27,8 @@ from bulkwear.workflows.forecast.rates import (
 
 WORN_TRIANGLE_MEMORY, DRIVER_MEMORY = 3.1e3, 2.25e8
 MORE_CORES = (16, 64, 256)  # numbers of cores for which the wall time of a study is told besides the present one
-SECONDS_PER_HOUR, GIGABYTE = 3600.0, 1e9
+SECONDS_PER_MINUTE, SECONDS_PER_HOUR, GIGABYTE = 60.0, 3600.0, 1e9
+REPORTS_PER_DECK = 10  # -, steps at least that a solver reports of a deck of hours; those of this package have 15 to 60
 TIME_MARGIN = 2.0  # -, over the forecast: ranks do not share all work evenly, and nodes differ
 LEAST_MINUTES = 10  # Python, its libraries and a slow file system
 MEMORY_MARGIN = 1.5  # -, over the forecast
@@ -204,18 +205,36 @@ def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
     ]
 
 
-def demands(study: Study) -> dict[str, tuple[int, int]]:
-    """Return the minutes and MB that the jobs of a study which call the solver ask for at first, by their names.
+def demands(study: Study) -> dict[str, tuple[int, int, int]]:
+    """Return the minutes and MB that the jobs of a study which call the solver ask for at first, by their names, and
+    the core minutes between two steps that a solver reports, see `step_core_minutes`.
 
     Raises RatesError.
     """
-    table = forecast_table(work_of(study), read_rates(rates_file()).rates)
-    return {row["job"]: (minutes(row["wall_h"]), megabytes(row["memory_gb"])) for row in table.to_dict("records")}
+    work, rates = work_of(study), read_rates(rates_file()).rates
+    return {
+        row["job"]: (minutes(row["wall_h"]), megabytes(row["memory_gb"]), step_core_minutes(job, rates))
+        for job, row in zip(work, forecast_table(work, rates).to_dict("records"), strict=True)
+    }
+
+
+def step_core_minutes(job: Work, rates: Rates) -> int:
+    """Return about the most core minutes that pass between two steps that a job's solver reports, rounded up."""
+    decks: list[tuple[float, float]] = []  # how many of a kind, and the core seconds of all of them
+    for stage in job.stages:
+        terms = stage.terms()
+        spent = sum(terms[term] * rates[term] for term in SOLVER_TERMS)
+        if stage.decks or not decks:
+            decks.append((max(stage.decks, 1), spent))
+        else:  # it goes on with the deck before
+            decks[-1] = decks[-1][0], decks[-1][1] + spent
+    longest = max((spent / count for count, spent in decks), default=0.0)
+    return math.ceil(longest / REPORTS_PER_DECK / SECONDS_PER_MINUTE)
 
 
 def minutes(wall_hours: float) -> int:
     """Return the minutes to ask for, for work that is expected to take so long (h)."""
-    return LEAST_MINUTES + math.ceil(60.0 * TIME_MARGIN * wall_hours)
+    return LEAST_MINUTES + math.ceil(SECONDS_PER_HOUR / SECONDS_PER_MINUTE * TIME_MARGIN * wall_hours)
 
 
 def megabytes(gigabytes: float) -> int:

@@ -12,5 +12,5 @@ with project_job(snakemake.log[0]):
     folder = Path(snakemake.output.restart).parent
     ranks = ranks_here(snakemake.resources.tasks, snakemake.threads)
     case, launcher = find_case(snakemake.params.case), snakemake.resources.get("mpi", LAUNCHER)
-    patience = patience_of(snakemake.resources)
+    patience = patience_of(snakemake.resources, ranks)
     fill_bed(case, snakemake.wildcards.bed, snakemake.params.bed, folder, ranks, launcher, patience)

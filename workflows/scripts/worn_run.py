@@ -10,6 +10,7 @@ from bulkwear.workflows.engine.patience import patience_of
 from bulkwear.workflows.engine.solver import LAUNCHER, ranks_here
 
 with project_job(snakemake.log[0]):
+    ranks = ranks_here(snakemake.resources.tasks, snakemake.threads)
     run_chain(
         Chain(
             name=snakemake.wildcards.run,
@@ -19,9 +20,9 @@ with project_job(snakemake.log[0]):
             surface=Path(snakemake.input.surface),
             bed=snakemake.params.bed,
             bed_restart=next(map(Path, snakemake.input.bed), None),
-            ranks=ranks_here(snakemake.resources.tasks, snakemake.threads),
+            ranks=ranks,
             launcher=snakemake.resources.get("mpi", LAUNCHER),
-            patience=patience_of(snakemake.resources),
+            patience=patience_of(snakemake.resources, ranks),
             same_as=next((Path(path).parent for path in snakemake.input.same), None),
         )
     )

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from bulkwear.workflows.engine import disk, solver
-from bulkwear.workflows.engine.patience import LONGEST_LOOK_S, Patience, Watch, patience_of
+from bulkwear.workflows.engine.patience import LONGEST_LOOK_S, STOP_TIMES, Patience, Watch, patience_of
 from bulkwear.workflows.engine.solver import SolverError, exit_words, ranks_here, run_deck
 
 Usage = namedtuple("Usage", "total used free")
@@ -61,10 +61,45 @@ def test_a_slow_solver_is_no_hanging_one():
     assert len(said) == 1
 
 
+def silent_minutes(watch: Watch, now: list[float], step: int | None) -> float:
+    """How long a solver that hangs after a step is waited for, min."""
+    began = now[0]
+    while not (why := watch.look(step)):
+        now[0] += LONGEST_LOOK_S
+    assert f"after step {step}" in why if step else "since its start" in why
+    return (now[0] - began) / MINUTE
+
+
+@pytest.mark.parametrize("expected_min, taken_min", [(0.0, 0.0), (0.0, 20.0), (0.0, 100.0), (100.0, 0.0)])
+def test_a_solver_of_few_lines_is_waited_for_longer(expected_min, taken_min):
+    """Some times as long as it has taken between two steps, or is forecast to; one that hangs is stopped then."""
+    now, said = [0.0], []
+    patience = Patience(10.0, 120.0, said.append, expected_min)
+    watch = Watch(patience, clock=lambda: now[0])
+    for step in (1, 2):
+        watch.look(step)
+        for _ in range(round(taken_min * MINUTE / LONGEST_LOOK_S)):
+            now[0] += LONGEST_LOOK_S
+            assert watch.look(step) is None
+    watch.look(3)
+    said.clear()
+    allowed = max(patience.stopped_min, STOP_TIMES * max(expected_min, taken_min))
+    assert silent_minutes(watch, now, 3) == pytest.approx(allowed, abs=2.0 * LONGEST_LOOK_S / MINUTE)
+    assert len(said) == 1 and f"is stopped after {allowed:.4g}" in said[0]
+
+
+def test_a_solver_that_hangs_at_its_start_is_waited_for_by_the_forecast():
+    """Before its first step nothing but the forecast is known."""
+    now, expected_min = [0.0], 50.0
+    watch = Watch(Patience(10.0, 120.0, lambda text: None, expected_min), clock=lambda: now[0])
+    assert silent_minutes(watch, now, None) == pytest.approx(STOP_TIMES * expected_min, abs=LONGEST_LOOK_S / MINUTE)
+
+
 def test_patience_is_a_setting_of_the_profile():
-    """Resources of a job say it; what they do not say is the default."""
+    """Resources of a job say it; what they do not say is the default. Ranks share what is expected."""
     assert patience_of({"no_step_said_min": 3, "no_step_stopped_min": 30}) == Patience(3.0, 30.0)
     assert patience_of({"threads": 2}) == Patience()
+    assert patience_of({"step_core_min": 8}, ranks=4) == Patience(expected_min=2.0)
 
 
 @pytest.mark.parametrize(

@@ -19,12 +19,14 @@ from bulkwear.workflows.config.design import list_studies, load_study
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.bulk_tests import time_step
 from bulkwear.workflows.engine.job import duration_text
+from bulkwear.workflows.engine.patience import Patience
 from bulkwear.workflows.engine.work import Stage, Work
 from bulkwear.workflows.forecast import forecast
 from bulkwear.workflows.forecast.forecast import (
     DRIVER_MEMORY,
     LEAST_MEMORY_MB,
     LEAST_MINUTES,
+    REPORTS_PER_DECK,
     SOLVER_MEMORY,
     announcement,
     demands,
@@ -33,6 +35,7 @@ from bulkwear.workflows.forecast.forecast import (
     megabytes,
     memory,
     minutes,
+    step_core_minutes,
     totals,
     wall_hours,
     work_of,
@@ -297,10 +300,21 @@ def test_every_job_asks_for_more_than_its_forecast(name):
     table = forecast_table(work_of(study), read_rates(rates_file()).rates).set_index("job")
     asked = demands(study)
     assert set(asked) == set(table.index)
-    for job, (runtime, room) in asked.items():
+    for job, (runtime, room, _) in asked.items():
         needed, largest = 60.0 * table.loc[job, "wall_h"], 1e3 * table.loc[job, "memory_gb"]
         assert 1.5 * needed < runtime <= 2.0 * needed + LEAST_MINUTES + 1
         assert largest < room <= 2.0 * largest + LEAST_MEMORY_MB + 1
+
+
+def test_steps_of_a_large_bed_are_reported_seldom():
+    """A share of the longest deck, of all stages that it has; what goes on with a deck belongs to it."""
+    steps, rates = 1e6, dict.fromkeys(TERMS, 0.0) | {"steps": 60.0 * REPORTS_PER_DECK / 1e6}  # a minute each
+    filled = (Stage(1, steps, 10.0), Stage(0, 2.0 * steps, 10.0), Stage(4, 4.0 * steps, 10.0))
+    assert step_core_minutes(Work("settled_bed", ("bed_A",), filled), rates) == 3
+    assert step_core_minutes(Work("worn_run", ("A",), ()), rates) == 0
+    tester = load_study("circular_tester", overrides={"fidelity": "paper"})
+    longest = max(minutes for name, (_, _, minutes) in demands(tester).items() if name.startswith("settled_bed"))
+    assert longest > Patience().stopped_min
 
 
 def test_nothing_to_do_still_takes_a_start():
