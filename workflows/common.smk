@@ -38,7 +38,7 @@ from bulkwear.workflows.engine.study_folder import StudyFolderError, date_back, 
 from bulkwear.workflows.engine.template_files import DeckError
 from bulkwear.workflows.engine.templates import templates_digest
 from bulkwear.workflows.engine.terminal import Terminal, listen
-from bulkwear.workflows.forecast.rates import rates_file
+from bulkwear.workflows.forecast.rates import damage_of, rates_file
 from bulkwear.workflows.report import figure_process
 from bulkwear.workflows.report.products import looked_up, paths_of, told_to
 
@@ -126,13 +126,15 @@ if GIVEN.target_jobs:  # on a node of a cluster, where nothing is called at the 
 
 
 onstart:
+    needed = jobs_by_study(workflow.dag.needrun_jobs())
+    if needed and (fault := damage_of(rates_file())):  # jobs ask for time and memory by them
+        raise WorkflowError(fault)
     # before the first job: a bed takes minutes to fill, and without its solver no run can follow
     for job in workflow.dag.needrun_jobs():
         if NAMING.ours(job.rule.name) == "worn_run":
             case, parameters = study_of(job.wildcards).case, run_parameters(job.wildcards)
             if fault := cycle_fault(executable_of(parameters, wears=True), case, parameters):
                 raise WorkflowError(fault)
-    needed = jobs_by_study(workflow.dag.needrun_jobs())
     if workflow.local_exec:  # a cluster's nodes are others
         for study in STUDIES:
             if fault := beyond_machine(study, needed.get(study, ()), workflow.dag.needrun_jobs()):

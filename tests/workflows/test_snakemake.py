@@ -192,6 +192,19 @@ def test_a_missing_solver_is_one_sentence_before_any_job(tmp_path):
     assert not (folder / "results").exists()
 
 
+@pytest.mark.verify
+def test_damaged_rates_are_one_sentence_before_any_job(tmp_path):
+    """By them jobs ask for time and memory, and the wait for a silent solver is found."""
+    folder = workspace(tmp_path)
+    (folder / "results").mkdir()
+    (folder / "results" / "cost_rates.json").write_text("{")
+    process = snakemake(folder, "tiny")
+    output, _ = process.communicate(timeout=TIMEOUT)
+    assert process.returncode != 0
+    assert "results/cost_rates.json: no file of rates (" in output and "Traceback" not in output
+    assert [path.name for path in (folder / "results").iterdir()] == ["cost_rates.json"]
+
+
 def test_the_run_with_the_largest_bed_starts_first(tmp_path):
     """On one core the profile's scheduler takes all jobs of higher priority, then the others by size of their input;
     so beds and meshes have that priority, and runs do not.

@@ -5,6 +5,7 @@ those of config/cost_rates.json, which are another machine's.
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -77,20 +78,29 @@ def read_rates(path: Path) -> MachineRates:
         found = json.loads(path.read_text(encoding="utf-8"))
         rates = MachineRates(**found, measured_here=path.parent.name != DEFAULT.parent.name)
         numbers = [float(rates.rates[term]) for term in TERMS]
+        if missing := {"processor", "cores"} - set(dict(rates.machine)):
+            raise ValueError(f"machine has no {', '.join(sorted(missing))}")
     except (OSError, ValueError, TypeError, KeyError, AttributeError) as fault:
         raise RatesError(
             f"{path}: no file of rates ({fault}); remove it and `make rates` measures them anew."
         ) from fault
-    if not all(number >= 0.0 for number in numbers):
-        raise RatesError(
-            f"{path}: a rate is {min(numbers):g} s, allowed is 0 or more; `make rates` measures them anew."
-        )
+    if wrong := [number for number in numbers if not (math.isfinite(number) and number >= 0.0)]:
+        raise RatesError(f"{path}: a rate is {wrong[0]:g} s, allowed is 0 or more; `make rates` measures them anew.")
     if not (isinstance(rates.side_by_side, int) and rates.side_by_side >= 1):
         raise RatesError(
             f"{path}: side_by_side is {rates.side_by_side!r}, allowed are whole numbers from 1 on; `make rates`"
             " measures them anew."
         )
     return rates
+
+
+def damage_of(path: Path) -> str | None:
+    """Return what is wrong with a file of rates, a sentence; None for a sound one."""
+    try:
+        read_rates(path)
+    except RatesError as fault:
+        return str(fault)
+    return None
 
 
 def write_rates(path: Path, rates: MachineRates) -> None:

@@ -1,6 +1,7 @@
 """Rates of a machine: found from measurements, kept in a file, marked when they are another machine's."""
 
 import json
+import math
 import os
 import shutil
 from dataclasses import replace
@@ -31,6 +32,7 @@ from bulkwear.workflows.forecast.rates import (
     TERMS,
     MachineRates,
     RatesError,
+    damage_of,
     machine_facts,
     rates_file,
     read_rates,
@@ -135,6 +137,7 @@ def test_rates_round_trip(tmp_path):
     """What is written is read again, and nothing else is left in the folder."""
     write_rates(tmp_path / "cost_rates.json", rates())
     assert read_rates(tmp_path / "cost_rates.json") == rates()
+    assert damage_of(tmp_path / "cost_rates.json") is None
     assert [path.name for path in tmp_path.iterdir()] == ["cost_rates.json"]
 
 
@@ -182,18 +185,35 @@ def test_copies_are_a_whole_number(tmp_path, copies):
         read_rates(tmp_path / "cost_rates.json")
 
 
-@pytest.mark.parametrize("text", ["{", "[]", "{}", '{"rates": {}, "machine": {}, "date": "", "fit": {}}'])
+NO_MACHINE = {"rates": KNOWN, "date": "", "fit": {}}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{",
+        "[]",
+        "null",
+        "{}",
+        '{"rates": {}, "machine": {}, "date": "", "fit": {}}',
+        json.dumps(NO_MACHINE | {"machine": {}}),
+        json.dumps(NO_MACHINE | {"machine": "a name"}),
+    ],
+)
 def test_a_damaged_file_is_one_sentence(tmp_path, text):
     """Named, with what to do."""
-    (tmp_path / "cost_rates.json").write_text(text)
+    file = tmp_path / "cost_rates.json"
+    file.write_text(text)
     with pytest.raises(RatesError, match=r"cost_rates\.json: no file of rates \(.*\); remove it and `make rates`"):
-        read_rates(tmp_path / "cost_rates.json")
+        read_rates(file)
+    assert damage_of(file).startswith(f"{file}: no file of rates")
 
 
-def test_a_negative_rate_is_refused(tmp_path):
-    """No work gives time back."""
-    write_rates(tmp_path / "cost_rates.json", rates(rates=KNOWN | {"steps": -1.0}))
-    with pytest.raises(RatesError, match="a rate is -1 s, allowed is 0 or more"):
+@pytest.mark.parametrize("rate, said", [(-1.0, "-1"), (math.inf, "inf"), (math.nan, "nan")])
+def test_a_rate_that_is_none_is_refused(tmp_path, rate, said):
+    """No work gives time back, and none takes for ever."""
+    write_rates(tmp_path / "cost_rates.json", rates(rates=KNOWN | {"steps": rate}))
+    with pytest.raises(RatesError, match=f"a rate is {said} s, allowed is 0 or more"):
         read_rates(tmp_path / "cost_rates.json")
 
 
