@@ -1,6 +1,7 @@
 """A study on a real Slurm: the profile of clusters through Snakemake's executor, killed by Slurm in the middle."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -118,24 +119,39 @@ def test_a_study_runs_on_slurm_and_resumes_after_scancel(cluster, tmp_path):
     assert found == wear_without_slurm(folder, tmp_path / "elsewhere")
 
 
-def test_ranks_are_tasks(cluster, tmp_path):
-    """A study's ranks are the tasks that its beds ask for. The queue is stopped: nothing runs."""
-    folder, before = study(tmp_path, PLAIN + "solver: {ranks: 2}\n"), len(cluster.jobs())
+def submitted(folder: Path, cluster: Slurm, count: int, *arguments: str) -> dict[str, tuple[str, str]]:
+    """{comment: (cores, time limit)} of so many submissions of a study. The queue is stopped: nothing runs."""
+    before = len(cluster.jobs())
     cluster.ask("scontrol", "update", "PartitionName=main", "State=DOWN")
-    process = snakemake(folder, cluster, f"results/tiny/{RUN}/wear.csv")
+    process = snakemake(folder, cluster, *arguments)
     try:
-        wait_for(lambda: len(cluster.jobs()) == before + 2, process, folder)
+        wait_for(lambda: len(cluster.jobs()) == before + count, process, folder)
         asked = {job["comment"]: (job["cpus"], job["limit"]) for job in cluster.jobs()[before:]}
     finally:
         process.kill()
         process.wait()
         cluster.cancel_all()
         cluster.ask("scontrol", "update", "PartitionName=main", "State=UP")
-    assert asked == {
-        "rule_meshes_surface_mesh": ("1", "20:00"),
-        "rule_settled_bed_wildcards_tiny_bed_1": ("2", "11:00"),
-    }
     assert {job["state"] for job in cluster.jobs()[before:]} == {"CANCELLED"}
+    return asked
+
+
+def test_ranks_are_tasks(cluster, tmp_path):
+    """A study's ranks are the tasks that its beds ask for."""
+    folder = study(tmp_path, PLAIN + "solver: {ranks: 2}\n")
+    assert submitted(folder, cluster, 2, f"results/tiny/{RUN}/wear.csv") == {
+        "rule_meshes_surface_mesh": ("1", "20:00"),
+        "rule_settled_bed_wildcards_tiny_bed_R5": ("2", "11:00"),
+    }
+
+
+def test_the_batch_of_a_calibration_is_its_cores(cluster, tmp_path):
+    """Also where they are more than a submission of small jobs has."""
+    folder = workspace(tmp_path)
+    shutil.copy(REPOSITORY / "config/studies/calibration.yaml", folder / "config/studies")
+    batch = ("--config", "calibration={batch: 2}", "--cores", "1")
+    asked = submitted(folder, cluster, 1, "results/calibration/simulations.csv", *batch)
+    assert [cores for cores, _ in asked.values()] == ["2"]
 
 
 @pytest.mark.parametrize("within", ["", "srun --ntasks=1 --cpus-per-task=2 "])

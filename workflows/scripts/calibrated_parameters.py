@@ -4,14 +4,16 @@ from pathlib import Path
 
 from bulkwear.workflows.cases.calibration.driver import run_calibration
 from bulkwear.workflows.engine.job import project_job
+from bulkwear.workflows.engine.solver import ranks_here
 
 with project_job(snakemake.log[0]):
+    at_once = ranks_here(snakemake.resources.cpus_per_task, snakemake.threads)  # simulations of a rank each
     tables = run_calibration(
         snakemake.params.run,
         Path(snakemake.input.measured),
         Path(snakemake.input.pairs),
         Path(snakemake.output.simulations).parent,
-        snakemake.threads,
+        at_once,
     )
     for name, table in zip(("simulations", "looks", "repeats"), tables, strict=True):
         table.to_csv(snakemake.output[name], index=False)

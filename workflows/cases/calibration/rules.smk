@@ -4,6 +4,11 @@ from bulkwear.workflows.cases.calibration.case import calibration_box, measured_
 from bulkwear.workflows.engine.inputs import SimulatedFrom
 
 
+def batch_of(wildcards):
+    """How many simulations a calibration does at a time."""
+    return calibration_box(study_of(wildcards))["calibration"]["batch"]
+
+
 rule calibrated_parameters:
     input:
         measured=lambda wildcards: measured_file(study_of(wildcards)),
@@ -16,10 +21,11 @@ rule calibrated_parameters:
         "results/{study}/logs/calibrated_parameters.log",
     benchmark:
         "results/{study}/logs/calibrated_parameters.benchmark.tsv"
-    threads: lambda wildcards: calibration_box(study_of(wildcards))["calibration"]["batch"]
+    threads: batch_of
     resources:
         runtime=asked("calibrated_parameters", 0),
         mem_mb=asked("calibrated_parameters", 1),
+        cpus_per_task=batch_of,  # of a submission, whose threads are no more than the profile's cores
     params:
         run=lambda wildcards: SimulatedFrom.all_of(calibration_box(study_of(wildcards))),
         templates=templates_digest("shear_box", "draw_down", "wall_shear"),
@@ -38,10 +44,11 @@ rule box_sizes:
         "results/{study}/logs/box_sizes.log",
     benchmark:
         "results/{study}/logs/box_sizes.benchmark.tsv"
-    threads: lambda wildcards: calibration_box(study_of(wildcards))["calibration"]["batch"]
+    threads: batch_of
     resources:
         runtime=asked("box_sizes", 0),
         mem_mb=asked("box_sizes", 1),
+        cpus_per_task=batch_of,  # of a submission, whose threads are no more than the profile's cores
     params:
         runs=lambda wildcards: SimulatedFrom.all_of({run.name: run.parameters for run in study_of(wildcards).runs}),
         templates=templates_digest("shear_box"),
