@@ -17,7 +17,13 @@ from bulkwear.workflows.config.packings import possible_packings
 from bulkwear.workflows.config.published_tables import check_published
 from bulkwear.workflows.config.rounds import read_round
 from bulkwear.workflows.config.run_checks import check_files
-from bulkwear.workflows.config.targets import default_studies, naming, nearly_studies, requested_studies
+from bulkwear.workflows.config.targets import (
+    default_studies,
+    naming,
+    nearly_studies,
+    requested_studies,
+    triggers_sentence,
+)
 from bulkwear.workflows.engine.cases import case_folders
 from bulkwear.workflows.engine.inputs import (
     SimulatedFrom,
@@ -352,8 +358,16 @@ def run_geometry(wildcards):
 
 
 @cache
+def tell_triggers():
+    """Say once what Snakemake makes again where it is called without the package's profile, as by another Snakefile."""
+    if not GIVEN.target_jobs and (said := triggers_sentence(map(str, workflow.rerun_triggers))):
+        logger.warning(said)
+
+
+@cache
 def simulated_run(study, run):
     """The parameters of a run, and of its bed, which run again when what is simulated from them changes."""
+    tell_triggers()  # here, as Snakemake knows them only when this file has been read
     case, parameters = STUDIES[study].case, STUDIES[study].run(run).parameters
     bed = STUDIES[study].beds.get(STUDIES[study].bed_of(run))
     found = simulated_from(case, parameters, bed)

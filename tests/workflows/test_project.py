@@ -413,6 +413,21 @@ use rule * from {name} as {name}_*
     assert "config of the module: studies is 'mine', allowed is a list of names of studies." in output
 
 
+@pytest.mark.parametrize(
+    ("triggers", "said"),
+    [
+        ((), "are code, input, mtime, params, software-env: newer code fills beds and simulates runs again"),
+        (("--rerun-triggers", "mtime"), "are mtime: without params and input results may stay"),
+        (PROFILE, ""),
+    ],
+)
+def test_a_pipeline_without_our_profile_is_told(tmp_path, triggers, said):
+    """What Snakemake makes again there, and what it does not; nothing with the package's profile."""
+    folder = own_project(tmp_path / "my project")
+    output = said_of(folder, *triggers, "--cores", "1", "bw_mine_decks", "--dry-run")
+    assert output.count("rerun-triggers of Snakemake") == bool(said) and said in output
+
+
 def test_a_study_of_the_package_s_name_is_refused(tmp_path):
     """It would be unclear whose it is."""
     folder = own_project(tmp_path / "my project")

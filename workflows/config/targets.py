@@ -13,6 +13,7 @@ from bulkwear.workflows.config.validation import unknown_name
 from bulkwear.workflows.engine.project import Project, current_project
 
 DEMO = "demo"  # of the package
+RERUN_TRIGGERS = ("mtime", "params", "input")  # as in profiles/default: what Snakemake makes a job again for
 BELOW_RESULTS = re.compile(r"(?:.*/)?results/([^/]+)/")
 
 
@@ -38,6 +39,21 @@ def naming(modify: Callable[[str], str], is_module: bool) -> Naming:
     """Return how a function changes names: what it puts before and after them."""
     before, _, after = modify("\0").partition("\0")
     return Naming(before, after, is_module)
+
+
+def triggers_sentence(found: Iterable[str]) -> str | None:
+    """Return what triggers of Snakemake mean that are not those of the package's profiles, a sentence; else None."""
+    found = sorted(found)
+    if set(found) == set(RERUN_TRIGGERS):
+        return None
+    if lacking := [name for name in RERUN_TRIGGERS if name not in found]:
+        means = f"without {' and '.join(lacking)} results may stay that no longer answer what is asked"
+    else:
+        means = "newer code fills beds and simulates runs again, also where it changes no number"
+    return (
+        f"rerun-triggers of Snakemake are {', '.join(found)}: {means}; the package's profiles/default has"
+        f" {', '.join(RERUN_TRIGGERS)}."
+    )
 
 
 def default_studies(project: Project) -> list[str]:
