@@ -395,15 +395,15 @@ def bed_restart_of_run(folder):
 
 
 def surface_of_run(wildcards):
-    """The surface of a run. Raises WorkflowError where the run, or its bed, was made from something else and Snakemake,
-    which compares but times of files then, has no record of it: as of results that were copied without .snakemake.
+    """The surface of a run. Of results that were copied without .snakemake Snakemake compares but times of files: a run,
+    or its bed, that was made from something else is made again.
     """
     study, run = wildcards.study, wildcards.run
     folder, bed = Path("results") / study, STUDIES[study].bed_of(run)
-    check_made_from_this("worn_run", folder / run / "wear.csv", partial(other_run, study, run))
+    again_if_unrecorded(folder / run / "wear.csv", partial(other_run, study, run))
     if bed:
         filled = partial(other_bed, folder / "beds" / bed, STUDIES[study].case, STUDIES[study].beds[bed])
-        check_made_from_this("settled_bed", folder / "beds" / bed / "cost.csv", filled)
+        again_if_unrecorded(folder / "beds" / bed / "cost.csv", filled)
     return str(folder / run / "surface.vtu")
 
 
@@ -415,19 +415,18 @@ def other_run(study, run):
     return other_inputs(folder, found) or other_length(folder, case, parameters)
 
 
-def check_made_from_this(rule, made, other):
-    """Raise WorkflowError for a file that exists, of which Snakemake has no record, and that was made otherwise."""
-    if GIVEN.target_jobs or GIVEN.touch or GIVEN.forceall or RerunTrigger.PARAMS not in workflow.rerun_triggers:
+def again_if_unrecorded(made, other):
+    """Have a file made again that exists, of which Snakemake has no record, and that was made otherwise; say why.
+
+    other: a function that tells from what else, in a phrase
+    """
+    if GIVEN.target_jobs or GIVEN.touch or RerunTrigger.PARAMS not in workflow.rerun_triggers or not made.exists():
         return
-    if any(NAMING.ours(name) == rule for name in GIVEN.forcerun or ()) or not made.exists():
+    if workflow.persistence.metadata(IOFile(str(made))) is not None or str(made) in workflow.dag.forcefiles:
         return
-    if workflow.persistence.metadata(IOFile(str(made))) is None and (why := other()):
-        raise WorkflowError(
-            f"{made.parent} was made from something else"
-            + ("" if why is True else f": {why}")
-            + ", and there is no record of Snakemake (.snakemake) by which it would be made again; add"
-            " --forcerun settled_bed worn_run, which keeps what still holds, or take another folder."
-        )
+    if why := other():
+        workflow.dag.forcefiles.add(str(made))  # as Snakemake does with what an interrupted job has left
+        logger.info(f"{made.parent} is made again: {why}, and .snakemake has no record of it.")
 
 
 def same_run(wildcards):

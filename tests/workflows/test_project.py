@@ -224,21 +224,22 @@ def test_a_changed_line_is_told_before_a_run_is_done_again(finished, tmp_path):
 
 @pytest.mark.solver
 def test_results_without_snakemakes_record_answer_no_other_question(finished, tmp_path):
-    """Of results that were copied without .snakemake a run that was simulated from something else is refused, and its
-    bed; what still holds is taken, and with --forcerun all is planned."""
+    """Of results that were copied without .snakemake a run that was simulated from something else is made again, and
+    its bed, which is told; what still holds is taken."""
     mine = shutil.copytree(finished["mine"], tmp_path / "mine", symlinks=True)
     shutil.rmtree(mine / ".snakemake")
     arguments = (*PROFILE, "--snakefile", str(PACKAGE / "Snakefile"), "--dry-run", f"results/{STUDY}/summary.csv")
-    assert "worn_run" not in planned_jobs(said_of(mine, *arguments))
+    assert not {"worn_run", "settled_bed"} & set(planned_jobs(said_of(mine, *arguments)))
     study = mine / "config/studies/mine.yaml"
     study.write_text(study.read_text().replace(WORD, "something else"))
-    said = said_of(mine, *arguments, code=1)
-    assert f"results/{STUDY}/A_plain was made from something else: its deck of a wear cycle changed" in said
-    forced = planned_jobs(said_of(mine, *arguments, "--forcerun", "settled_bed", "worn_run"))
-    assert forced["worn_run"] == forced["settled_bed"] == 1
+    said = said_of(mine, *arguments)
+    assert f"results/{STUDY}/A_plain is made again: its deck of a wear cycle changed" in said
+    assert planned_jobs(said)["worn_run"] == 1 and "settled_bed" not in planned_jobs(said)
     study.write_text(study.read_text().replace("something else", WORD))
     (mine / "results" / STUDY / "beds/bed_A/deck.in").write_text("another deck")
-    assert f"results/{STUDY}/beds/bed_A was made from something else, and there is" in said_of(mine, *arguments, code=1)
+    said = said_of(mine, *arguments)
+    assert f"results/{STUDY}/beds/bed_A is made again: its deck changed, line 1: '" in said
+    assert planned_jobs(said)["settled_bed"] == 1
 
 
 def test_a_project_is_planned_on_a_cluster(tmp_path):

@@ -141,10 +141,13 @@ def other_length(run_folder: Path, case: Case, parameters: Parameters) -> str | 
     return f"{asked} wear cycles are asked for, it has {there}"
 
 
-def other_bed(bed_folder: Path, case: Case, bed: Parameters) -> bool:
-    """Return whether a filled bed was filled by another deck."""
+def other_bed(bed_folder: Path, case: Case, bed: Parameters) -> str | None:
+    """Return in a phrase by what other deck a filled bed was filled; None where it was this one, or none is left."""
     filled = bed_folder / DECK
-    return filled.is_file() and filled.read_text(encoding="utf-8") != bed_deck_text(case, bed)
+    if not filled.is_file():
+        return None
+    before, now = filled.read_text(encoding="utf-8"), bed_deck_text(case, bed)
+    return None if before == now else f"its deck changed, {_first_change(before, now)}"
 
 
 def why_again(run_folder: Path, found: Mapping[str, Any]) -> str | None:
