@@ -16,8 +16,6 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from bulkwear.workflows.config.chosen import ROWS
-from bulkwear.workflows.config.packings import PACKINGS
 from bulkwear.workflows.engine.code_parts import OF_CASE, PARTS, SHARED_TEMPLATES
 from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.engine.provenance import git
@@ -110,8 +108,8 @@ def write_origins(docs: Path, origins: Iterable[Origin]) -> None:
 
 
 def keep_origin(docs: Path, origin: Origin) -> None:
-    """Write down where a page that was made now comes from; of one known before, how it is made stays, but for which
-    rows and packings a study ran.
+    """Write down where a page that was made now comes from; of one known before, how it is made stays, but for the
+    settings of a study.
     """
     known = read_origins(docs)
     if origin.page not in (each.page for each in known):
@@ -120,10 +118,8 @@ def keep_origin(docs: Path, origin: Origin) -> None:
 
 
 def _renewed(before: Origin, now: Origin) -> Origin:
-    kept = {name: value for name, value in before.settings.items() if not (now.study and name in (ROWS, PACKINGS))}
-    return replace(
-        now, settings={**kept, **now.settings}, figure=before.figure, command=before.command, runs=before.runs
-    )
+    kept = now.settings if now.study else before.settings
+    return replace(now, settings=kept, figure=before.figure, command=before.command, runs=before.runs)
 
 
 def read_changes(docs: Path) -> list[Change]:

@@ -19,7 +19,9 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
+from bulkwear.workflows.config.chosen import ROWS
 from bulkwear.workflows.config.design import Study, load_study
+from bulkwear.workflows.config.packings import PACKINGS
 from bulkwear.workflows.engine.project import work_here
 from bulkwear.workflows.engine.provenance import code_of_cases
 from bulkwear.workflows.engine.state import STATE
@@ -108,6 +110,7 @@ def remake_study(origin: Origin, docs: Path, cores: int, run: bool) -> str:
     """Write the page of a study from its runs; return what was done, or what is missing and what it costs."""
     study = load_study(origin.study, overrides=origin.overrides)
     folder = Path("results") / origin.study
+    settings = {name: value for name, value in origin.settings.items() if name not in (ROWS, PACKINGS)}
     ran_here = fidelity_that_was_run(folder) in (None, study.fidelity)
     pending = pending_of(origin, cores) if ran_here else None
     missing = missing_work(study.foreseen, pending)
@@ -122,9 +125,9 @@ def remake_study(origin: Origin, docs: Path, cores: int, run: bool) -> str:
         call(study_command(origin.study, origin, cores))
     if origin.figure:
         shutil.copyfile(folder / "figures" / f"{origin.figure}.png", docs / origin.page)
-        keep_origin(docs, origin_of(origin.page, folder, as_decided(study, folder)))
+        keep_origin(docs, origin_of(origin.page, folder, as_decided(study, folder), settings))
     else:
-        write_results(folder, docs, as_decided(study, folder))
+        write_results(folder, docs, as_decided(study, folder), settings)
     return f"{WRITTEN} results/{origin.study}"
 
 

@@ -1,11 +1,14 @@
 """The page of a study for the docs: its provenance and durations, in Markdown."""
 
+import shlex
+
 import pandas as pd
 import pytest
 
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.markdown import (
     Caption,
+    config_words,
     durations,
     fidelity_that_was_run,
     markdown,
@@ -48,6 +51,14 @@ def test_runs_of_another_fidelity_make_no_page(tmp_path):
     with pytest.raises(ValueError, match=r"the study was run at quick, found --fidelity standard, allowed is quick\."):
         write_results(tmp_path, tmp_path / "docs", study)
     assert fidelity_that_was_run(tmp_path / "none") is None
+
+
+def test_a_page_tells_the_settings_that_it_is_made_with():
+    """As the command line takes them again."""
+    settings = {"sliding": {"revolutions": 17}, "particle_scale": 4}
+    _, words = config_words(settings).split(" --config ")
+    assert dict(map(setting_of, shlex.split(words))) == settings
+    assert config_words({}) == ""
 
 
 def test_a_page_is_of_the_settings_that_were_run(tmp_path):

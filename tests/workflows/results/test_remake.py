@@ -113,12 +113,12 @@ def test_what_is_known_of_a_page_is_renewed_but_its_settings_stay(tmp_path):
         read_origins(tmp_path)
 
 
-def test_a_study_that_ran_more_rows_is_known_by_those(tmp_path):
-    """Once whole it has no rows: it would be written of the first ones alone again. Other settings stay."""
+def test_a_study_is_known_by_the_settings_of_its_page(tmp_path):
+    """Once whole it has no rows: it would be written of the first ones alone again. So it is with any setting."""
     few = replace(OLD, study="demo", settings={"rows": ["R5"], "packings": 1, "solver": {"search": "ours"}})
     write_origins(tmp_path, [few])
     keep_origin(tmp_path, replace(few, settings={"packings": 2}))
-    assert read_origins(tmp_path)[0].settings == {"solver": {"search": "ours"}, "packings": 2}
+    assert read_origins(tmp_path)[0].settings == {"packings": 2}
 
 
 def test_pending_files_are_those_of_the_summary_that_would_be_made():
@@ -148,7 +148,9 @@ def done(monkeypatch, tmp_path):
     """What a remake of a study's page does instead of simulating and writing; the list of what it did."""
     found = []
     monkeypatch.setattr(module, "call", lambda command: found.append("made"))
-    monkeypatch.setattr(module, "write_results", lambda folder, docs, study: found.append(f"page of {folder}"))
+    monkeypatch.setattr(
+        module, "write_results", lambda folder, docs, study, settings: found.append(f"page of {folder}")
+    )
     monkeypatch.chdir(tmp_path)
     return found
 
