@@ -9,9 +9,29 @@ def batch_of(wildcards):
     return calibration_box(study_of(wildcards))["calibration"]["batch"]
 
 
+def measured_of(wildcards):
+    """The table of measured responses; see `again_if_unrecorded`."""
+    from bulkwear.workflows.cases.calibration.kept import other_calibration  # slow to import
+
+    study, made = study_of(wildcards), Path(f"results/{wildcards.study}/simulations.csv")
+    measured = measured_file(study)
+    again_if_unrecorded(made, lambda: other_calibration(calibration_box(study), Path(measured), made))
+    return measured
+
+
+def pairs_of_sizes(wildcards):
+    """The table of pairs that others simulated; see `again_if_unrecorded`."""
+    from bulkwear.workflows.cases.calibration.kept import other_box_sizes  # slow to import
+
+    study, made = study_of(wildcards), Path(f"results/{wildcards.study}/box_sizes.csv")
+    runs, pairs = {run.name: run.parameters for run in study.runs}, pairs_file(study)
+    again_if_unrecorded(made, lambda: other_box_sizes(runs, Path(pairs), made))
+    return pairs
+
+
 rule calibrated_parameters:
     input:
-        measured=lambda wildcards: measured_file(study_of(wildcards)),
+        measured=measured_of,
         pairs=lambda wildcards: pairs_file(study_of(wildcards)),
     output:
         simulations="results/{study}/simulations.csv",
@@ -37,7 +57,7 @@ rule calibrated_parameters:
 
 rule box_sizes:
     input:
-        pairs=lambda wildcards: pairs_file(study_of(wildcards)),
+        pairs=pairs_of_sizes,
     output:
         "results/{study}/box_sizes.csv",
     log:

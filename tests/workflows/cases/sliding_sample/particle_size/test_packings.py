@@ -10,6 +10,7 @@ from bulkwear.postproc.flow.bed import read_snapshot
 from bulkwear.postproc.flow.bulk_test import HEAP
 from bulkwear.postproc.flow.packing import inner_means, loose_and_dense, packing_profile
 from bulkwear.workflows.cases.sliding_sample.decks import bed_contacts
+from bulkwear.workflows.cases.sliding_sample.particle_size.kept import other_containers
 from bulkwear.workflows.cases.sliding_sample.particle_size.packings import (
     AT_REST_BEHIND,
     LEAVING_DIAMETERS,
@@ -23,7 +24,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.packings import (
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import by_scale, packed_runs
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.units import to_si
-from bulkwear.workflows.engine.bulk_simulations import FILLED, simulated
+from bulkwear.workflows.engine.bulk_simulations import FILLED, simulated, simulation_folder
 from bulkwear.workflows.engine.bulk_tests import deck_text, time_step
 from bulkwear.workflows.engine.derived import PERIODIC
 from bulkwear.workflows.engine.solver import DECK, LEDGER_EXECUTABLE, run_deck
@@ -207,3 +208,25 @@ def test_packings_of_the_study(tmp_path):
     assert isinstance(table, pd.DataFrame) and set(table["particle_scale"]) == {8.0}
     assert table.groupby("state")["layer"].max().to_dict() == {"dense": 3, "difference": 3, "loose": 3}
     assert table.loc[table["state"] == "loose", "height_mm"].iloc[0] == pytest.approx(0.5 * 4 * 8 * 2.65, rel=ROUNDING)
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({}, None),
+        ({"packing": {"shaking_s": 0.5}}, "its containers are others"),
+        ({"rows": ["S8"], "packing": {"every_scale": False}}, "its particle scales are others"),
+    ],
+)
+def test_what_finished_containers_answer(tmp_path, asked, said):
+    """Their tests and scales, of a table and the folders beside it."""
+
+    def containers(**overrides):
+        found = study(**overrides)
+        return packed_runs(found), to_si(found.settings)["packing"]
+
+    runs, packing = containers()
+    for run in by_scale(runs).values():
+        simulation_folder(container(run, packing), tmp_path).mkdir()
+    pd.DataFrame({"particle_scale": list(by_scale(runs)) * 2}).to_csv(tmp_path / "profiles.csv", index=False)
+    assert other_containers(*containers(**asked), tmp_path / "profiles.csv") == said
