@@ -429,6 +429,47 @@ def again_if_unrecorded(made, other):
         logger.info(f"{made.parent} is made again: {why}, and .snakemake has no record of it.")
 
 
+def batch_of(wildcards):
+    """How many simulations a calibration does at a time."""
+    from bulkwear.workflows.cases.calibration.case import calibration_box  # slow to import
+
+    return calibration_box(study_of(wildcards))["calibration"]["batch"]
+
+
+def measured_of(wildcards):
+    """The table of measured responses; see `again_if_unrecorded`."""
+    from bulkwear.workflows.cases.calibration.case import calibration_box, measured_file
+    from bulkwear.workflows.cases.calibration.kept import other_calibration  # slow to import
+
+    study, made = study_of(wildcards), Path(f"results/{wildcards.study}/simulations.csv")
+    measured = measured_file(study)
+    again_if_unrecorded(made, lambda: other_calibration(calibration_box(study), Path(measured), made))
+    return measured
+
+
+def pairs_of_sizes(wildcards):
+    """The table of pairs that others simulated; see `again_if_unrecorded`."""
+    from bulkwear.workflows.cases.calibration.case import pairs_file
+    from bulkwear.workflows.cases.calibration.kept import other_box_sizes  # slow to import
+
+    study, made = study_of(wildcards), Path(f"results/{wildcards.study}/box_sizes.csv")
+    runs, pairs = {run.name: run.parameters for run in study.runs}, pairs_file(study)
+    again_if_unrecorded(made, lambda: other_box_sizes(runs, Path(pairs), made))
+    return pairs
+
+
+def nothing_before_packings(wildcards):
+    """No input; see `again_if_unrecorded`."""
+    from bulkwear.workflows.cases.sliding_sample.particle_size.kept import other_containers  # slow to import
+    from bulkwear.workflows.cases.sliding_sample.particle_size.study import packed_runs
+    from bulkwear.workflows.config.units import to_si
+
+    study, made = study_of(wildcards), Path(f"results/{wildcards.study}/packings/profiles.csv")
+    packing = to_si(study.settings)["packing"]
+    again_if_unrecorded(made, lambda: other_containers(packed_runs(study), packing, made))
+    return []
+
+
 def same_run(wildcards):
     """The table of the run that simulates this one as well; nothing where the run is simulated itself."""
     same = study_of(wildcards).same_as(wildcards.run)

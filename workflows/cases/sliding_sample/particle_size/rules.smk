@@ -4,16 +4,6 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.study import packed_r
 from bulkwear.workflows.config.units import to_si
 
 
-def nothing_before_packings(wildcards):
-    """No input; see `again_if_unrecorded`."""
-    from bulkwear.workflows.cases.sliding_sample.particle_size.kept import other_containers  # slow to import
-
-    study, made = study_of(wildcards), Path(f"results/{wildcards.study}/packings/profiles.csv")
-    packing = to_si(study.settings)["packing"]
-    again_if_unrecorded(made, lambda: other_containers(packed_runs(study), packing, made))
-    return []
-
-
 rule packing_profiles:
     input:
         nothing_before_packings,
