@@ -365,12 +365,18 @@ def tell_triggers():
 
 
 @cache
+def made_from(study, run):
+    """The case, the parameters and the bed of a run, and what it is simulated from."""
+    case, parameters = STUDIES[study].case, STUDIES[study].run(run).parameters
+    bed = STUDIES[study].beds.get(STUDIES[study].bed_of(run))
+    return case, parameters, bed, simulated_from(case, parameters, bed)
+
+
+@cache
 def simulated_run(study, run):
     """The parameters of a run, and of its bed, which run again when what is simulated from them changes."""
     tell_triggers()  # here, as Snakemake knows them only when this file has been read
-    case, parameters = STUDIES[study].case, STUDIES[study].run(run).parameters
-    bed = STUDIES[study].beds.get(STUDIES[study].bed_of(run))
-    found = simulated_from(case, parameters, bed)
+    case, parameters, bed, found = made_from(study, run)
     digest = digest_of(found)
     if not GIVEN.target_jobs and (why := why_again(Path(f"results/{study}/{run}"), found)):
         logger.info(f"{run} of {study} differs from what was simulated: {why}.")
@@ -409,8 +415,7 @@ def surface_of_run(wildcards):
 
 def other_run(study, run):
     """From what else a run was simulated."""
-    case, parameters = STUDIES[study].case, STUDIES[study].run(run).parameters
-    found = simulated_from(case, parameters, STUDIES[study].beds.get(STUDIES[study].bed_of(run)))
+    case, parameters, _, found = made_from(study, run)
     folder = Path("results") / study / run
     return other_inputs(folder, found) or other_length(folder, case, parameters)
 
