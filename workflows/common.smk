@@ -556,6 +556,11 @@ def ranks_of(wildcards):
     return study_of(wildcards).settings["solver"]["ranks"]
 
 
+def submitted(wildcards):
+    """A resource: 1 where a cluster's job runs this Snakemake, 0 where it was called, though in an allocation."""
+    return int(workflow.remote_exec)
+
+
 def launcher_of(wildcards):
     """The program that starts the ranks of a solver; none for one rank."""
     return LAUNCHER if ranks_of(wildcards) > 1 else None

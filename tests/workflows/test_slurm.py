@@ -48,6 +48,21 @@ finally:
 """
 
 
+# Ranks that a job starts which asks for two tasks and has one core of Snakemake's.
+RANKS_TOLD = """
+def ranks(resources, threads):
+    from bulkwear.workflows.engine.job import ranks_here
+    return ranks_here(resources.tasks, threads, resources.submitted)
+
+%s
+
+rule told:
+    output: "{name}.txt"
+    resources: tasks=2, cpus_per_task=1, mpi="mpirun", submitted=submitted, runtime=1, mem_mb=100
+    run: Path(output[0]).write_text(str(ranks(resources, threads)))
+"""
+
+
 @pytest.fixture(scope="module")
 def cluster():
     with Slurm() as running:
@@ -162,6 +177,20 @@ def test_ranks_start_inside_a_job(cluster, tmp_path, within):
     kept = "env -u SLURM_NODELIST -u SLURM_JOB_NODELIST -u SLURM_TASKS_PER_NODE -u SLURM_NTASKS"
     cluster.run(2, f"{kept} PYTHONPATH={REPOSITORY} {within}{sys.executable} {tmp_path}/ranks.py", tmp_path)
     assert "1 by 1 by 2 MPI processor grid" in (tmp_path / "job.txt").read_text()
+
+
+@pytest.mark.verify  # waits for a minute
+def test_an_allocation_is_no_submission(cluster, tmp_path):
+    """Snakemake called within salloc keeps to its cores; the job that it submits has its tasks."""
+    rules = (REPOSITORY / "workflows/common.smk").read_text()
+    told = next(part for part in rules.split("\n\n\n") if part.startswith("def submitted("))
+    (tmp_path / "Snakefile").write_text(f"from pathlib import Path\n{RANKS_TOLD % told}")
+    words = [sys.executable, "-m", "snakemake", "--cores", "1"]
+    slurm = ["--executor", "slurm", "--jobs", "1", "--default-resources", "nodes=1", *OF_TEST.split()]
+    environment = {**cluster.environment, "PYTHONPATH": str(REPOSITORY)}
+    for call in (["salloc", "--ntasks=1", *words, "here.txt"], [*words, "there.txt", *slurm]):
+        subprocess.run(call, cwd=tmp_path, env=environment, check=True, capture_output=True, timeout=TIMEOUT)
+    assert [(tmp_path / f"{name}.txt").read_text() for name in ("here", "there")] == ["1", "2"]
 
 
 def files_of(folder: Path) -> set[str]:

@@ -38,6 +38,15 @@ def let_jobs_import() -> None:
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [beside, at_start, os.environ.get("PYTHONPATH")]))
 
 
+def ranks_here(tasks: int, threads: int, submitted: int) -> int:
+    """Return the ranks that a job starts: its tasks where Snakemake submitted it to Slurm, which gave a core for each;
+    else, also in an allocation in which Snakemake was called (salloc, sbatch), no more than the cores it was given.
+
+    submitted: 1 where a cluster's job runs Snakemake, 0 where it was called
+    """
+    return tasks if submitted and "SLURM_JOB_ID" in os.environ else min(tasks, threads)
+
+
 class _Both:
     """A text stream that writes to two."""
 

@@ -36,6 +36,7 @@ rule settled_bed:
         step_core_min=asked("settled_bed", 2),
         tasks=ranks_of,
         cpus_per_task=1,
+        submitted=submitted,
         mpi=launcher_of,
     params:
         case=case_of,
@@ -66,6 +67,7 @@ rule worn_run:
         step_core_min=asked("worn_run", 2),
         tasks=ranks_of,
         cpus_per_task=1,
+        submitted=submitted,
         mpi=launcher_of,
     params:
         case=case_of,

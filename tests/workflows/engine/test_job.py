@@ -8,7 +8,14 @@ import sys
 import pyarrow
 import pytest
 
-from bulkwear.workflows.engine.job import INTERRUPTED, STOPPED, let_jobs_import, processor_seconds_of, project_job
+from bulkwear.workflows.engine.job import (
+    INTERRUPTED,
+    STOPPED,
+    let_jobs_import,
+    processor_seconds_of,
+    project_job,
+    ranks_here,
+)
 from tests import REPOSITORY
 
 FAULTS = {
@@ -86,3 +93,16 @@ def test_a_job_that_went_well_tells_its_processor_time(tmp_path):
     failed = tmp_path / "failed.log"
     subprocess.run([*words[:-1], str(failed), "fails"], cwd=REPOSITORY, check=False)
     assert "it went wrong" in failed.read_text() and processor_seconds_of(failed) is None
+
+
+def test_ranks_are_no_more_than_the_cores_that_were_given(monkeypatch):
+    """Four ranks asked for on two cores are two, also in an allocation in which Snakemake was called; a job that it
+    submitted to Slurm has its tasks, whatever cores are counted on its node.
+    """
+    monkeypatch.delenv("SLURM_JOB_ID", raising=False)
+    assert ranks_here(4, 2, submitted=0) == 2
+    assert ranks_here(1, 2, submitted=0) == 1
+    assert ranks_here(4, 2, submitted=1) == 2, "another cluster"
+    monkeypatch.setenv("SLURM_JOB_ID", "7")
+    assert ranks_here(4, 2, submitted=0) == 2
+    assert ranks_here(4, 2, submitted=1) == 4

@@ -21,6 +21,7 @@ rule calibrated_parameters:
         runtime=asked("calibrated_parameters", 0),
         mem_mb=asked("calibrated_parameters", 1),
         cpus_per_task=batch_of,  # of a submission, whose threads are no more than the profile's cores
+        submitted=submitted,
     params:
         run=lambda wildcards: SimulatedFrom.all_of(calibration_box(study_of(wildcards))),
         templates=templates_digest("shear_box", "draw_down", "wall_shear"),
@@ -44,6 +45,7 @@ rule box_sizes:
         runtime=asked("box_sizes", 0),
         mem_mb=asked("box_sizes", 1),
         cpus_per_task=batch_of,  # of a submission, whose threads are no more than the profile's cores
+        submitted=submitted,
     params:
         runs=lambda wildcards: SimulatedFrom.all_of({run.name: run.parameters for run in study_of(wildcards).runs}),
         templates=templates_digest("shear_box"),
