@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +13,7 @@ from bulkwear.meshes.disc import track_disc, track_stretch
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.reference.sphere_contact import safe_time_step, stable_time_step, touching_reach
 from bulkwear.workflows.cases.pin_on_disc import decks as pin_deck
+from bulkwear.workflows.cases.pin_on_disc.checks import design_fault
 from bulkwear.workflows.cases.pin_on_disc.parameters import PIN_CHECKS, ROUNDING, run_parameters
 from bulkwear.workflows.engine.case import SETUP_LOADS, Parameters, Piece, register
 from bulkwear.workflows.engine.sample_case import SampleCase
@@ -25,8 +26,6 @@ from bulkwear.workflows.engine.worn_pair import LAW_FIGURES
 if TYPE_CHECKING:
     import pandas as pd
 
-COMPARED = "coefficient"  # series of the design that figures of groove and volume are made of
-MESHES = "mesh"  # series of the design that differs in its elements only
 FORCE_WINDOWS = "forces.txt"  # of the solver: means over windows of equal length
 # Relative, of the mean vertical force of a cycle: what a pin lacks that is off the disc for that share of the cycle.
 # One that swings when a cycle ends lacks its momentum: seen 0.2 %, at 3 m/s, where it meets its own groove for the
@@ -56,16 +55,8 @@ class PinOnDisc(SampleCase):
     leftovers = (SETUP_LOADS, FORCE_WINDOWS)
 
     def design_fault(self, rows: Sequence[Mapping[str, Any]]) -> str | None:
-        """Return a phrase if no row is of the series of coefficients, of which most figures and the page are made,
-        or if the rows of the series of meshes differ in more than their mesh."""
-        if not any(row["series"] == COMPARED for row in rows):
-            found = _listed(row["series"] for row in rows) or "no row"
-            return f"column series holds {found}, allowed is a design with at least one row of series {COMPARED}"
-        coefficients = [row.get("wear_coefficient_per_pa", "nothing") for row in rows if row["series"] == MESHES]
-        if len(set(coefficients)) > 1:
-            found = _listed(map(str, coefficients))
-            return f"column wear_coefficient_per_pa holds {found} in series {MESHES}, allowed is one for all its rows"
-        return None
+        """Return a phrase unless figures can be made of the rows."""
+        return design_fault(rows)
 
     def run_parameters(
         self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str
@@ -215,11 +206,6 @@ class PinOnDisc(SampleCase):
 
 
 register(PinOnDisc())
-
-
-def _listed(values: Iterable[str]) -> str:
-    """Each value once, with commas."""
-    return ", ".join(dict.fromkeys(values))
 
 
 def _contact(parameters: Parameters) -> tuple[float, float, float, float, float]:

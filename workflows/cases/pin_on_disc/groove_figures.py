@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from bulkwear.workflows.cases.pin_on_disc import charts, figure_findings
-from bulkwear.workflows.cases.pin_on_disc.case import MESHES
+from bulkwear.workflows.cases.pin_on_disc.checks import MESHES
 from bulkwear.workflows.cases.pin_on_disc.findings import trend
 from bulkwear.workflows.cases.pin_on_disc.volume_figures import (
     CONTOURS,

@@ -166,10 +166,22 @@ def test_a_fault_of_a_rows_own_value_names_the_table(config):
             "column wear_coefficient_per_pa holds 1e-11, 5e-11, nothing in series mesh, allowed is one for all its"
             " rows.",
         ),
+        (
+            "row,series,load_n,track_radius_mm\nc1,coefficient,5,\nc2,coefficient,10,\nm1,mesh,5,20\n",
+            "column load_n holds 5.0, 10.0 in series coefficient and mesh, allowed is one for these rows.",
+        ),
+        (
+            "row,series,particle_scale,track_radius_mm\nc1,coefficient,,22\nm1,mesh,,20\ns1,size,2,\n",
+            "column track_radius_mm holds 22.0, 20.0 in series coefficient and mesh, allowed is one for these rows.",
+        ),
+        (
+            "row,series,particle_scale\nc1,coefficient,2\nc2,coefficient,\n",
+            "column particle_scale holds 2.0, nothing in series coefficient, allowed is one for these rows.",
+        ),
     ],
 )
 def test_a_design_of_which_no_figures_can_be_made_is_refused(config, table, words):
-    """Without the series of coefficients, or with meshes that differ in their coefficient: before anything runs."""
+    """Without the series of coefficients, or with rows in one figure that differ in what it does not tell."""
     for name in ("cases/pin_on_disc.yaml", "materials.yaml", "studies/pin_on_disc.yaml"):
         config.write(name, (REPOSITORY / "config" / name).read_text(encoding="utf-8"))
     config.write("designs/pin_on_disc_quick.csv", table)
