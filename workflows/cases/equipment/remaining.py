@@ -13,11 +13,17 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import SurfaceMesh, areas, read_surface
+from bulkwear.postproc.mesh import SurfaceMesh, areas, read_surface, worn_faces
 from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.tables.display import MILLIMETRES, few_digits
 from bulkwear.postproc.wear.area_patches import area_patches, patches_of
-from bulkwear.postproc.wear.thickness import remaining_thickness
+from bulkwear.postproc.wear.side import turned_as
+from bulkwear.postproc.wear.thickness import (
+    BACK_LOST_THICKNESS,
+    LOCAL_THICKNESS,
+    remaining_thickness,
+    thickness_to_back,
+)
 from bulkwear.workflows.cases.equipment.life import patch_courses
 from bulkwear.workflows.cases.equipment.life_tables import (
     BEYOND,
@@ -70,9 +76,41 @@ def states_of(run: Run, folder: Path) -> list[State]:
         patch, lost = patches_of(surface, pristine, patches), np.zeros(patches.max() + 1)
         for places, (course,) in of_parts:
             lost[places.index] = course.at(hours) - course.at(min(since, hours))
-        left = remaining_thickness(surface)[surface.triangles].mean(axis=1) - np.where(patch >= 0, lost[patch], 0.0)
+        left = left_of_faces(surface, pristine) - np.where(patch >= 0, lost[patch], 0.0)
         states.append(State(hours, how_told(hours, worn_for), surface, patch, np.maximum(left, 0.0)))
     return states
+
+
+def left_of_faces(surface: SurfaceMesh, pristine: SurfaceMesh) -> np.ndarray:
+    """Return the thickness (m,) m left on each face: the mean of what its corners have left, less what they were
+    thicker as built than the face itself. A ray from a corner at a rim may pass the back, and then the thickness of the
+    corner is that from the rim's own face along the part.
+
+    Where thickness is given, and where no ray from a face as built finds its back, the mean alone; NaN where a corner
+    has no thickness.
+    """
+    left = remaining_thickness(surface)[surface.triangles].mean(axis=1)
+    if not np.isfinite(surface.point_data.get(BACK_LOST_THICKNESS, np.nan)).any():
+        return left
+    faces, measured = worn_faces(pristine), np.isfinite(surface.point_data[BACK_LOST_THICKNESS])
+    nearest = patches_of(surface, pristine, np.where(faces, np.arange(len(faces)), -1))
+    own = np.where(nearest >= 0, _thickness_of_faces(turned_as(pristine, surface), faces)[nearest], np.nan)
+    thicker = surface.point_data[LOCAL_THICKNESS][surface.triangles].mean(axis=1) - own
+    known = np.isfinite(thicker) & measured[surface.triangles].all(axis=1)
+    return np.maximum(left - np.where(known, thicker, 0.0), 0.0)
+
+
+def _thickness_of_faces(built: SurfaceMesh, faces: np.ndarray) -> np.ndarray:
+    """Return how far (m,) m it is through a part as built from each of some faces (m,) bool, as the mean over those of
+    its corners that have the back behind them; NaN where none has.
+    """
+    label, thickness = np.asarray(built.cell_data.get("part", np.zeros(len(faces)))), np.full(len(faces), np.nan)
+    for part in np.unique(label[faces]):
+        own = np.flatnonzero(label == part)
+        found = thickness_to_back(built.points, built.triangles[own])[0]
+        some = np.isfinite(found).any(axis=1)
+        thickness[own[some]] = np.nanmean(found[some], axis=1)
+    return thickness
 
 
 def _shapes(place: Path) -> list[tuple[float, Path]]:
