@@ -51,8 +51,8 @@ finally:
 # Ranks that a job starts which asks for two tasks and has one core of Snakemake's.
 RANKS_TOLD = """
 def ranks(resources, threads):
-    from bulkwear.workflows.engine.job import ranks_here
-    return ranks_here(resources.tasks, threads, resources.submitted)
+    from bulkwear.workflows.engine.job import ranks_to_start
+    return ranks_to_start(resources.tasks, threads, resources.submitted)
 
 %s
 

@@ -19,6 +19,7 @@ import bulkwear
 from bulkwear.workflows.engine.disk import full_sentence, is_full
 from bulkwear.workflows.engine.machine import machine_facts
 from bulkwear.workflows.engine.project import enter_project
+from bulkwear.workflows.engine.solver import ranks_here
 
 SECONDS_BETWEEN_LINES = 15.0
 WITHOUT_THREAD = ("can't start new thread", os.strerror(errno.EAGAIN))  # Python's words, and those of C++
@@ -38,13 +39,13 @@ def let_jobs_import() -> None:
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [beside, at_start, os.environ.get("PYTHONPATH")]))
 
 
-def ranks_here(tasks: int, threads: int, submitted: int) -> int:
-    """Return the ranks that a job starts: its tasks where Snakemake submitted it to Slurm, which gave a core for each;
-    else, also in an allocation in which Snakemake was called (salloc, sbatch), no more than the cores it was given.
+def ranks_to_start(tasks: int, threads: int, submitted: int) -> int:
+    """Return the ranks that a job starts. Where Snakemake was called within an allocation (salloc, sbatch) they are no
+    more than the cores that it gives the job, though Slurm's variables are there.
 
     submitted: 1 where a cluster's job runs Snakemake, 0 where it was called
     """
-    return tasks if submitted and "SLURM_JOB_ID" in os.environ else min(tasks, threads)
+    return ranks_here(tasks, threads) if submitted else min(tasks, threads)
 
 
 class _Both:

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from bulkwear.workflows.cases.calibration.driver import run_box_sizes
-from bulkwear.workflows.engine.job import project_job, ranks_here
+from bulkwear.workflows.engine.job import project_job, ranks_to_start
 
 with project_job(snakemake.log[0]):
     resources = snakemake.resources
-    at_once = ranks_here(resources.cpus_per_task, snakemake.threads, resources.submitted)  # simulations of a rank each
+    at_once = ranks_to_start(resources.cpus_per_task, snakemake.threads, resources.submitted)  # of a rank each
     table = run_box_sizes(snakemake.params.runs, Path(snakemake.input.pairs), Path(snakemake.output[0]).parent, at_once)
     table.to_csv(snakemake.output[0], index=False)

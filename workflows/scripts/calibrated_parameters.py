@@ -3,11 +3,11 @@
 from pathlib import Path
 
 from bulkwear.workflows.cases.calibration.driver import run_calibration
-from bulkwear.workflows.engine.job import project_job, ranks_here
+from bulkwear.workflows.engine.job import project_job, ranks_to_start
 
 with project_job(snakemake.log[0]):
     resources = snakemake.resources
-    at_once = ranks_here(resources.cpus_per_task, snakemake.threads, resources.submitted)  # simulations of a rank each
+    at_once = ranks_to_start(resources.cpus_per_task, snakemake.threads, resources.submitted)  # of a rank each
     tables = run_calibration(
         snakemake.params.run,
         Path(snakemake.input.measured),

@@ -5,12 +5,12 @@ from pathlib import Path
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.cycles import run_chain
-from bulkwear.workflows.engine.job import project_job, ranks_here
+from bulkwear.workflows.engine.job import project_job, ranks_to_start
 from bulkwear.workflows.engine.patience import patience_of
 from bulkwear.workflows.engine.solver import LAUNCHER
 
 with project_job(snakemake.log[0]):
-    ranks = ranks_here(snakemake.resources.tasks, snakemake.threads, snakemake.resources.submitted)
+    ranks = ranks_to_start(snakemake.resources.tasks, snakemake.threads, snakemake.resources.submitted)
     run_chain(
         Chain(
             name=snakemake.wildcards.run,

@@ -14,7 +14,7 @@ from bulkwear.workflows.engine.job import (
     let_jobs_import,
     processor_seconds_of,
     project_job,
-    ranks_here,
+    ranks_to_start,
 )
 from tests import REPOSITORY
 
@@ -95,14 +95,11 @@ def test_a_job_that_went_well_tells_its_processor_time(tmp_path):
     assert "it went wrong" in failed.read_text() and processor_seconds_of(failed) is None
 
 
-def test_ranks_are_no_more_than_the_cores_that_were_given(monkeypatch):
-    """Four ranks asked for on two cores are two, also in an allocation in which Snakemake was called; a job that it
-    submitted to Slurm has its tasks, whatever cores are counted on its node.
-    """
-    monkeypatch.delenv("SLURM_JOB_ID", raising=False)
-    assert ranks_here(4, 2, submitted=0) == 2
-    assert ranks_here(1, 2, submitted=0) == 1
-    assert ranks_here(4, 2, submitted=1) == 2, "another cluster"
+def test_only_a_submitted_job_has_the_tasks_of_slurm(monkeypatch):
+    """Four ranks asked for on two cores are two, also in an allocation in which Snakemake was called."""
     monkeypatch.setenv("SLURM_JOB_ID", "7")
-    assert ranks_here(4, 2, submitted=0) == 2
-    assert ranks_here(4, 2, submitted=1) == 4
+    assert ranks_to_start(4, 2, submitted=0) == 2
+    assert ranks_to_start(4, 2, submitted=1) == 4
+    monkeypatch.delenv("SLURM_JOB_ID")
+    assert ranks_to_start(4, 2, submitted=1) == 2, "another cluster"
+    assert ranks_to_start(1, 2, submitted=0) == 1
