@@ -18,13 +18,21 @@ from benchmarks.measure import Measure, in_turn, measured
 from benchmarks.runs import cycle_deck, particles_of, prepared_chain, prepared_tester
 from benchmarks.stiffness import CONVEX
 from bulkwear.meshes.disc import track_disc
-from bulkwear.postproc.mesh import PLAIN, write_stl
+from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, write_stl
 from bulkwear.workflows.engine.derived import SKIN_OVER_RADIUS
 from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, LOG, processor_seconds, solver_environment
-from tests.verification.pin_cases import DISC_RADIUS, INNER_RADIUS, TRACK_RADIUS, PinCase, set_down, write_arc
+from tests.verification.pin_cases import (
+    DISC_RADIUS,
+    INNER_RADIUS,
+    TRACK_RADIUS,
+    PinCase,
+    round_groove,
+    set_down,
+    write_arc,
+)
 
 DEMO_SCALE, TESTER_SCALE = 3.4, 6.0  # -, of particles; those of the studies at quick
-ELEMENT, BAND = 1e-4, 0.8e-3  # m; some 80,000 triangles
+ELEMENT, BAND = 1e-4, 0.8e-3  # m; some 80,000 triangles; the groove is 1.1 mm wide
 QUICK_DEMO_SCALE, QUICK_ELEMENT = 4.0, 4e-4
 FEW, MANY, QUICK_MANY = 100, 900, 200  # time steps
 ROUNDS, QUICK_ROUNDS = 5, 1
@@ -34,7 +42,9 @@ OF_SEARCH, OF_ORDER = ("-search", "stock"), ("-order", "stock")
 OURS, SEARCH, ORDER = "ours", "the library's search", "the library's order of particles"
 THINNER, FORMER = "the former skin of lists", "search, order and skin as they were"
 WAYS = {OURS: (), SEARCH: OF_SEARCH, ORDER: OF_ORDER, THINNER: (), FORMER: (*OF_SEARCH, *OF_ORDER)}
-PIN = "pin on a whole disc"
+PIN, PIN_IN_GROOVE = "pin on a whole disc", "pin in a groove of a whole disc"
+GROOVE_DEPTH = 1e-4  # m; the pin touches some 60 triangles there
+FLAT, IN_GROOVE = PinCase(), PinCase(time_step=0.25 * PinCase.time_step)  # so many contacts allow no larger step
 LENGTH = re.compile(r"^(variable\s+(?:end_step|cycle_steps)\s+equal )\d+", re.MULTILINE)
 
 
@@ -42,14 +52,22 @@ class SearchError(RuntimeError):
     """The two searches gave two ledgers."""
 
 
-def pin_deck(folder: Path, element: float) -> Path:
+def pin_deck(folder: Path, disc: SurfaceMesh, case: PinCase = FLAT) -> Path:
     """Return a folder with the deck of a pin that goes round on a whole disc at rest."""
-    mesh = track_disc(TRACK_RADIUS, INNER_RADIUS, DISC_RADIUS, element, BAND)
     folder.mkdir(parents=True, exist_ok=True)
-    set_down(folder, PinCase(), mesh)
-    write_arc(folder / "cycle_1", PinCase(), mesh, 1, 0, MANY)
-    write_stl(folder / "cycle_1" / "surface.stl", mesh.points, mesh.triangles)
+    set_down(folder, case, disc)
+    write_arc(folder / "cycle_1", case, disc, 1, 0, MANY)
+    write_stl(folder / "cycle_1" / "surface.stl", disc.points, disc.triangles)
     return folder / "cycle_1"
+
+
+def pin_decks(folder: Path, element: float) -> dict[str, Path]:
+    """Return decks as `decks` does: of a pin on a flat disc, and in a groove of its own shape."""
+    flat = track_disc(TRACK_RADIUS, INNER_RADIUS, DISC_RADIUS, element, BAND)
+    return {
+        PIN: pin_deck(folder / "pin", flat),
+        PIN_IN_GROOVE: pin_deck(folder / "pin_in_groove", round_groove(flat, GROOVE_DEPTH), IN_GROOVE),
+    }
 
 
 def decks(folder: Path, quick: bool) -> dict[str, Path]:
@@ -61,7 +79,7 @@ def decks(folder: Path, quick: bool) -> dict[str, Path]:
     for surface in () if quick else (PLAIN, CONVEX):
         tester = prepared_tester(folder / "tester", TESTER_SCALE, surface)
         found[f"circular tester, channel, {surface}"] = cycle_deck(tester, "speed")[0]
-    return found | {PIN: pin_deck(folder / "pin", QUICK_ELEMENT if quick else ELEMENT)}
+    return found | pin_decks(folder, QUICK_ELEMENT if quick else ELEMENT)
 
 
 def with_former_skin(deck: str) -> str:
@@ -89,8 +107,9 @@ def measures(folder: Path, quick: bool) -> list[Measure]:
     for name, here in decks(folder, quick).items():
         deck = (here / "deck.in").read_text()
 
-        thinner = () if name == PIN else (THINNER, FORMER)  # the pin's skin is as it was
-        ways = [named for named in WAYS if name != PIN or named != THINNER]
+        pin = name in (PIN, PIN_IN_GROOVE)
+        thinner = () if pin else (THINNER, FORMER)  # the pin's skin is as it was
+        ways = [named for named in WAYS if not pin or named != THINNER]
 
         def way(named: str, deck: str = deck, here: Path = here, thinner: tuple = thinner) -> tuple[float, bytes]:
             given = with_former_skin(deck) if named in thinner else deck
