@@ -51,7 +51,7 @@ finally:
 # Ranks that a job starts which asks for two tasks and has one core of Snakemake's.
 RANKS_TOLD = """
 def ranks(resources, threads):
-    from bulkwear.workflows.engine.job import ranks_to_start
+    from bulkwear.workflows.engine.ranks import ranks_to_start
     return ranks_to_start(resources.tasks, threads, resources.submitted)
 
 %s

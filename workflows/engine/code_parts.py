@@ -25,7 +25,7 @@ PARTS = {  # name: what it is of the package
 OF_CASE = {"case": "workflows/cases", "templates": "templates"}  # parts of which each run has its case's
 SHARED_TEMPLATES = "_shared"
 ASIDE = {  # files that change no number of a run
-    *(f"workflows/engine/{name}.py" for name in ("code_parts", "inputs", "job", "own_code", "project")),
+    *(f"workflows/engine/{name}.py" for name in ("code_parts", "inputs", "job", "own_code", "project", "ranks")),
     *(f"workflows/engine/{name}.py" for name in ("provenance", "state", "work")),
     *(f"workflows/engine/{name}.py" for name in ("disk", "patience", "records", "row_check")),
     *(f"workflows/engine/{name}.py" for name in ("own_machine", "series", "study_folder", "terminal")),

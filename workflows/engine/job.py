@@ -19,7 +19,6 @@ import bulkwear
 from bulkwear.workflows.engine.disk import full_sentence, is_full
 from bulkwear.workflows.engine.machine import machine_facts
 from bulkwear.workflows.engine.project import enter_project
-from bulkwear.workflows.engine.solver import ranks_here
 
 SECONDS_BETWEEN_LINES = 15.0
 WITHOUT_THREAD = ("can't start new thread", os.strerror(errno.EAGAIN))  # Python's words, and those of C++
@@ -37,15 +36,6 @@ def let_jobs_import() -> None:
     """
     beside, at_start = str(Path(bulkwear.__file__).parents[1]), str(Path(__file__).parent / "at_start")
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [beside, at_start, os.environ.get("PYTHONPATH")]))
-
-
-def ranks_to_start(tasks: int, threads: int, submitted: int) -> int:
-    """Return the ranks that a job starts. Where Snakemake was called within an allocation (salloc, sbatch) they are no
-    more than the cores that it gives the job, though Slurm's variables are there.
-
-    submitted: 1 where a cluster's job runs Snakemake, 0 where it was called
-    """
-    return ranks_here(tasks, threads) if submitted else min(tasks, threads)
 
 
 class _Both:

@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from bulkwear.workflows.cases.calibration.driver import run_calibration
-from bulkwear.workflows.engine.job import project_job, ranks_to_start
+from bulkwear.workflows.engine.job import project_job
+from bulkwear.workflows.engine.ranks import ranks_to_start
 
 with project_job(snakemake.log[0]):
     resources = snakemake.resources

@@ -4,8 +4,9 @@ from pathlib import Path
 
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.cycles import fill_bed
-from bulkwear.workflows.engine.job import project_job, ranks_to_start
+from bulkwear.workflows.engine.job import project_job
 from bulkwear.workflows.engine.patience import patience_of
+from bulkwear.workflows.engine.ranks import ranks_to_start
 from bulkwear.workflows.engine.solver import LAUNCHER
 
 with project_job(snakemake.log[0]):

@@ -14,7 +14,6 @@ from bulkwear.workflows.engine.job import (
     let_jobs_import,
     processor_seconds_of,
     project_job,
-    ranks_to_start,
 )
 from tests import REPOSITORY
 
@@ -93,13 +92,3 @@ def test_a_job_that_went_well_tells_its_processor_time(tmp_path):
     failed = tmp_path / "failed.log"
     subprocess.run([*words[:-1], str(failed), "fails"], cwd=REPOSITORY, check=False)
     assert "it went wrong" in failed.read_text() and processor_seconds_of(failed) is None
-
-
-def test_only_a_submitted_job_has_the_tasks_of_slurm(monkeypatch):
-    """Four ranks asked for on two cores are two, also in an allocation in which Snakemake was called."""
-    monkeypatch.setenv("SLURM_JOB_ID", "7")
-    assert ranks_to_start(4, 2, submitted=0) == 2
-    assert ranks_to_start(4, 2, submitted=1) == 4
-    monkeypatch.delenv("SLURM_JOB_ID")
-    assert ranks_to_start(4, 2, submitted=1) == 2, "another cluster"
-    assert ranks_to_start(1, 2, submitted=0) == 1
