@@ -1,0 +1,113 @@
+"""Numbers that pages of docs tell in sentences of their own are those of the tables beside them, rounded."""
+
+import re
+
+import pandas as pd
+
+from tests import REPOSITORY
+from tests.support.doc_pages import read
+
+DOCS = REPOSITORY / "docs"
+SHORTEST, CHOSEN = "0.1", "0.4"  # time steps over the Rayleigh time
+
+
+def told(page):
+    """The words of a page with single spaces between them."""
+    return " ".join(read(DOCS / page).split())
+
+
+def table(name, **more):
+    """A table of docs."""
+    return pd.read_csv(DOCS / name, **more)
+
+
+def reached():
+    """Published numbers of the tester by pair of samples (rows) and quantity (columns): values, whether they agree."""
+    found = table("tables/tester_sensitivity_quick_sensitivity.csv")
+    return found.pivot(index="pair", columns="quantity", values="value"), found.groupby("pair")["reached"].sum()
+
+
+def test_what_settings_of_the_tester_reach():
+    """Most and fewest numbers, the fastest layer, and what the settings that are named reach."""
+    values, counts = reached()
+    page, total = told("circular_tester.md"), values.shape[1]
+    slides, volume = values["Sliding over travel, plain"], values["Volume per revolution, plain"]
+    ratio, fastest = values["Convex over plain"], values["Velocity of the lowest layer, plain"].max()
+    both, smooth = ["friction-rolling-bed", "friction-rolling-thin"], "friction-bed-thin"
+    assert (
+        f"No setting reaches more than {counts.max()} of the {total} numbers**, the reference {counts['reference']}."
+        in page
+    )
+    assert f"(up to {fastest:.0f} mm/s of 500)" in page
+    assert "reach sliding over travel, {:.2f} to {:.2f}, and".format(*slides[both]) in page
+    assert "plain sample's volume, {:.0f} and {:.0f} mm³ a revolution".format(*volume[both]) in page
+    assert "the convex one then loses {:.2f} and {:.2f} of it".format(*ratio[both]) in page
+    assert f"reaches sliding over travel ({slides[smooth]:.2f}) and the plain layer's spin" in page
+    assert f"It loses {volume[smooth]:.0f} mm³ a revolution, its convex sample {ratio[smooth]:.2f} of the plain" in page
+
+
+def test_what_moves_the_volume_of_the_tester():
+    """Factors of friction, rolling model, height and thickness with their intervals."""
+    found = table("tables/tester_sensitivity_quick_effects.csv").set_index(["quantity", "change"])
+    lines = found.loc["Volume per revolution, plain"].itertuples()
+    friction, rolling, height, thickness = [(line.factor, line.low, line.high) for line in lines]
+    page, interval = told("circular_tester.md"), "{:.2f} ({:.2f} to {:.2f})".format
+    assert f"{interval(*friction)} and {interval(*rolling).replace(' (', ' times (')} on the plain sample" in page
+    assert (
+        "cannot be said ({:.2f}, {:.2f} to {:.2f}), nor of thickness ({:.2f}, {:.2f} to {:.2f})".format(
+            *height, *thickness
+        )
+        in page
+    )
+
+
+def test_what_a_sphere_of_a_clump_costs():
+    """Processor time of a sphere and step, over that of single spheres in beds and in runs of the same surface."""
+    found = table("tables/grain_shape_quick_durations.csv")
+    parts = found["job"].str.extract(
+        r"(?P<what>bed|run)_(?P<shape>sphere|pair|tetrahedron)\S*?(?P<surface>_convex|_plain|)$"
+    )
+    found["cost"] = found["processor (min)"] / found["particles"] / found["steps"]
+    means = found.join(parts).groupby(["what", "surface", "shape"])["cost"].mean().unstack()
+    over = means.div(means["sphere"], axis=0)[["tetrahedron", "pair"]]
+    bed, runs = over.loc["bed"].iloc[0], over.loc["run"].to_numpy()
+    words = f"costs {bed['tetrahedron']:.1f} (four in a clump) and {bed['pair']:.1f} times (two) that of a single one"
+    assert f"{words}, in runs {runs.min():.1f} to {runs.max():.1f} times" in told("grain_shape.md")
+
+
+def test_how_a_bump_is_worn_through():
+    """Travel, cycles, what is left, updates that were remeshed and the smallest angle."""
+    found, page = table("worn_bump.csv"), told("wear.md")
+    last = found.iloc[-1]
+    travel, left = last["travel_mm"] / 1e3, last["bumps_left_percent"]
+    assert f"After {travel:.0f} m and {last['cycle']:.0f} cycles {left:.1f} % of the bump is left." in page
+    assert f"followed {(found['remeshed_faces'] > 0.0).sum()} updates" in page
+    assert found["smallest_angle_deg"].min() >= float(re.search(r"no angle fell below ([\d.]+) degrees", page)[1])
+    assert found["balance_error"].abs().max() <= float(re.search(r"the balance closes to (\S+)\.", page)[1])
+
+
+def test_how_far_grooves_depend_on_the_mesh():
+    """Spreads of depth and width over the meshes, and the rise of the work."""
+    found, page = table("groove_convergence.csv"), told("wear.md")
+    deep = found[(found["scheme"] == "conserving") & (found["strokes"] == found["strokes"].max())]
+    depth, width = (100.0 * (deep[each].max() / deep[each].min() - 1.0) for each in ("depth_um", "width_mm"))
+    work = 100.0 * (deep["work_over_load_times_distance"] - 1.0)
+    assert f"depths differ by {depth:.1f} %, widths (holding 95 % of the area) by {width:.1f} %" in page
+    assert f"by {work.min():.0f} to {work.max():.0f} % in the last stroke" in page
+    each = found[found["scheme"] == "per_triangle"]["depth_um"]
+    assert "the grooves are {:.0f}, {:.0f} and {:.0f} µm deep".format(*each) in page
+
+
+def test_what_decisions_say_of_softness_and_time_steps():
+    """Wear that the source's modulus adds, and what the chosen time step changes where runs start without a kick."""
+    page, softness = told("decisions.md"), told("stiffness.md")
+    plain, convex = re.findall(r"7e\+07 Pa: \+([\d.]+) % \(95 %: \+([\d.]+) to \+([\d.]+)\)", softness)
+    assert (
+        "{} % ({} to {}) of wear on a plain sample and {} % ({} to {}) on a convex one".format(*plain, *convex) in page
+    )
+    again = table("time_step_limits_again.csv", dtype={"rayleigh_fraction": str})
+    works = again[again["surface"] == "plain"].pivot(
+        index="seed", columns="rayleigh_fraction", values="sliding_work_J_per_m"
+    )
+    change = 100.0 * (works[CHOSEN] / works[SHORTEST] - 1.0).mean()
+    assert f"{CHOSEN} changes it by {change:.2f} %" in page
