@@ -21,10 +21,46 @@ def table(name, **more):
     return pd.read_csv(DOCS / name, **more)
 
 
+def rows(page, *first):
+    """The table on a page whose first columns are these, cells as they stand there."""
+    _, head, below = read(DOCS / page).partition(f"| {' | '.join(first)} |")
+    lines = f"{head}{below}".partition("\n\n")[0].splitlines()
+    cells = [[cell.strip() for cell in line.removeprefix("|").removesuffix("|").split("|")] for line in lines]
+    return pd.DataFrame(cells[2:], columns=cells[0])
+
+
+def less(ratio):
+    """How far a ratio is below or above 1, in per cent and words."""
+    return f"{100.0 * abs(1.0 - ratio):.1f} {'less' if ratio < 1.0 else 'more'}"
+
+
 def reached():
     """Published numbers of the tester by pair of samples (rows) and quantity (columns): values, whether they agree."""
     found = table("tables/tester_sensitivity_quick_sensitivity.csv")
     return found.pivot(index="pair", columns="quantity", values="value"), found.groupby("pair")["reached"].sum()
+
+
+def test_what_seventeen_revolutions_of_the_tester_show():
+    """Volumes after 56 and 184 h with their intervals, growth over the run, convex over plain."""
+    page, results = told("circular_tester.md"), "circular_tester_results_quick.md"
+    lost = rows(results, "hours", "quantity").set_index(["hours", "quantity"])
+    columns = ["ours", "interval low", "interval high"]
+    told_56, told_184 = (lost.loc[(hours, "convex volume"), columns].astype(float) for hours in ("56", "184"))
+    assert "After 56 h the convex sample has lost {:.0f} mm³ ({:.0f} to {:.0f} for".format(*told_56) in page
+    assert "After 184 h it has lost {:.0f} mm³ ({:.0f} to {:.0f}; measured".format(*told_184) in page
+    reduction = lost.loc[("56", "reduction"), columns].astype(float)
+    assert "{:.0f} % less than the plain one ({:.0f} to {:.0f}; measured".format(*reduction) in page
+    rates = rows(results, "surface", "shape", "particle scale", "packings", "revolutions", "rate mm3 per revolution")
+    columns = ["change percent", "change percent low", "change percent high"]
+    plain, convex = (rates.set_index("surface").loc[each, columns].astype(float) for each in ("plain", "convex"))
+    assert (
+        f"falls by {-plain.iloc[0]:.1f} % of the mean ({-plain.iloc[1]:.1f} less to {plain.iloc[2]:.1f} more)" in page
+    )
+    assert "The convex one's grows by {:.0f} % ({:.0f} to {:.0f})".format(*convex) in page
+    ratio = rows(results, "shape", "particle scale", "revolutions", "packings", "ratio").iloc[0]
+    assert (
+        f"it loses {ratio['ratio']} of the plain one's volume ({ratio['ratio low']} to {ratio['ratio high']})" in page
+    )
 
 
 def test_what_settings_of_the_tester_reach():
@@ -111,3 +147,21 @@ def test_what_decisions_say_of_softness_and_time_steps():
     )
     change = 100.0 * (works[CHOSEN] / works[SHORTEST] - 1.0).mean()
     assert f"{CHOSEN} changes it by {change:.2f} %" in page
+
+
+def test_what_a_travelling_window_changes():
+    """Wear in the window with the longer wake over that in the full bed, and how much cheaper it is."""
+    page, results = told("travelling_window.md"), "travelling_window_results.md"
+    window, key = "window 150 + 200, time step 0.4", ["surface", "bed"]
+    wear = rows(results, "surface", "bed", "packings").set_index(key)[["wear over full", "ratio low", "ratio high"]]
+    plain, convex = ([less(ratio) for ratio in wear.loc[(each, window)].astype(float)] for each in ("plain", "convex"))
+    of_plain, of_convex = (each[0].replace(" ", " % ") for each in (plain, convex))
+    assert f"wears {of_plain} than a bed of 2 m under a plain sample (95 %: {plain[1]} to {plain[2]})" in page
+    assert f"and {of_convex} under a convex one ({convex[1]} to {convex[2]})" in page
+    cost = rows(results, "surface", "bed", "bed length m").set_index(key)
+    columns = ["cheaper in processor time", "cheaper low", "cheaper high"]
+    cells = [
+        "{:.1f} ({:.1f} to {:.1f})".format(*cost.loc[(each, window), columns].astype(float))
+        for each in ("plain", "convex")
+    ]
+    assert f"| window 150 + 200, time step 0.4, shared bed too | {cells[0]} | {cells[1]} |" in page
