@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 NO_UNIT = "-"
+HARDNESS = "wall_hardness_pa"  # of what wears, where it is known
 WITH_EXPONENT = 1e6  # from which numbers are told with one
 UNDEFINED = "\u2013"  # shown for numbers that are not there
 # suffix of a key -> unit; the longest that fits counts, so they stand in that order
@@ -141,23 +142,30 @@ def _flat(section: Mapping[str, Any]) -> dict[str, Any]:
 
 def simplifications(study: Mapping[str, Any], summary: pd.DataFrame, page: ModuleType) -> list[tuple[str, str]]:
     """Return (what, how) of everything that is simpler here than on a machine, with the numbers of this
-    study. page: the words of its case; nothing is said about wear where nothing wears.
+    study. page: the words of its case, which may tell laws of its own; nothing is said about wear where nothing wears.
     """
-    settings = study["settings"]
+    settings, laws = study["settings"], getattr(page, "laws_told", _law_of_study)(study)
     reduced = "; ".join(study["remarks"]) or "nothing: all sizes and the travel are those of the paper fidelity"
     if not study["wears"]:
         return [("Reduced scale", f"{reduced}."), *page.simplifications(study)]
     return [
         ("Reduced scale", f"{reduced}."),
-        *_wear_simplifications(study, summary, page.further_cap(settings)),
+        *_wear_simplifications(study, summary, " ".join(laws.values()), page.further_cap(settings)),
         *page.simplifications(study),
-        *_comparison(settings["wear"]["law"]),
+        *_comparison(laws),
     ]
 
 
-def _comparison(law: str) -> list[tuple[str, str]]:
-    """Return what the solver's own wear measure is; nothing where the study wears by that law itself."""
-    if LAWS[law].is_solver_measure:
+def _law_of_study(study: Mapping[str, Any]) -> dict[str, str]:
+    """Return {law: what a volume is by it} of a study of one law."""
+    wear, sections = study["settings"]["wear"], [run["wear"] for run in study["parameters"].values()]
+    coefficient = range_text([each["wear_coefficient_per_pa"] for each in sections], 3)
+    return {wear["law"]: f"{law_words(wear, coefficient)}{hardness_words([e for e in sections if HARDNESS in e])}"}
+
+
+def _comparison(laws: Iterable[str]) -> list[tuple[str, str]]:
+    """Return what the solver's own wear measure is; nothing where something wears by that law itself."""
+    if any(LAWS[law].is_solver_measure for law in laws):
         return []
     how = (
         "The solver's own wear model is Finnie's impact wear with the velocity of the particle's centre, without "
@@ -166,12 +174,13 @@ def _comparison(law: str) -> list[tuple[str, str]]:
     return [("LIGGGHTS' Finnie differs", how)]
 
 
-def _wear_simplifications(study: Mapping[str, Any], summary: pd.DataFrame, further_cap: str) -> list[tuple[str, str]]:
-    """Return what concerns wear: law, acceleration, rigid sample or caps and what they hold back."""
-    wear = study["settings"]["wear"]
-    coefficients = [run["wear"]["wear_coefficient_per_pa"] for run in study["parameters"].values()]
-    scaled = [run["wear"] for run in study["parameters"].values() if "wall_hardness_pa" in run["wear"]]
-    law = ("Wear law", f"{law_words(wear, range_text(coefficients, 3))}{hardness_words(scaled)}")
+def _wear_simplifications(
+    study: Mapping[str, Any], summary: pd.DataFrame, laws: str, further_cap: str
+) -> list[tuple[str, str]]:
+    """Return what concerns wear: laws, acceleration, rigid sample or caps and what they hold back; nothing of caps
+    where no shape was worn.
+    """
+    wear, law = study["settings"]["wear"], ("Wear law", laws)
     factor = wear["acceleration"]
     accelerated = (
         f"The coefficient is multiplied by {factor:g}: one second of simulation stands for {factor:g} s of test. "
@@ -181,7 +190,10 @@ def _wear_simplifications(study: Mapping[str, Any], summary: pd.DataFrame, furth
     if not wear["deform"]:
         rigid = ("Rigid sample", "The surface keeps its shape: depths are worn volume over area, not applied.")
         return [law, acceleration, rigid]
-    carried = 100.0 * (summary["carried_volume_m3"] / summary["worn_volume_m3"]).max()
+    worn = summary[summary["worn_volume_m3"] > 0.0]
+    if worn.empty:
+        return [law, acceleration]
+    carried = 100.0 * (worn["carried_volume_m3"] / worn["worn_volume_m3"]).max()
     caps = (
         "Capped steps",
         f"In one wear cycle a node moves at most {wear['largest_step_edge_fraction']:g} of its shortest edge, and at "

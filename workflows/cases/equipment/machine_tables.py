@@ -12,8 +12,11 @@ from typing import Any
 import pandas as pd
 
 from bulkwear.postproc.tables.display import DEGREES, MILLIMETRES
+from bulkwear.postproc.wear.laws import LAWS
+from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.worn_pair import ONLY_TOLD
-from bulkwear.workflows.report.text import number
+from bulkwear.workflows.report.sentences import listed, spoken
+from bulkwear.workflows.report.text import HARDNESS, hardness_words, law_words, number, range_text
 
 SECONDS_PER_HOUR, TONNES_PER_KG, KG_PER_MT = 3600.0, 1e-3, 1e9
 RPM = 60.0 / (2.0 * math.pi)  # per rad/s
@@ -56,6 +59,39 @@ def _law_words(part: Mapping[str, Any]) -> str:
     """Return the wear law of a part, with its parameters in SI."""
     given = part["law_parameters"]
     return f"{part['law']} ({number(given, 3)})" if given else part["law"]
+
+
+def laws_of_parts(runs: Sequence[Parameters]) -> dict[str, str]:
+    """Return {law: what a volume is by it} of all parts that wear in some runs, with the coefficients of those parts;
+    of several laws each names its parts.
+    """
+    of_law: dict[str, list[Mapping[str, Any]]] = {}
+    for part in (part for run in runs for part in run["parts"] if part["wears"]):
+        of_law.setdefault(part["law"], []).append(part)
+    return {law: _words_of_law(law, parts, len(of_law) > 1) for law, parts in of_law.items()}
+
+
+def _words_of_law(law: str, parts: Sequence[Mapping[str, Any]], several: bool) -> str:
+    """Return what a volume is by the law of some parts; several: whether other parts have another one."""
+    coefficients = [part["wear_coefficient_per_pa"] for part in parts]
+    said = [law_words({"law": law, "parameters": _parameter_ranges(law, parts)}, range_text(coefficients, 3))]
+    if all(HARDNESS in part for part in parts):
+        said.append(hardness_words(parts).strip())
+    if min(coefficients) < max(coefficients):
+        said.append("Which part has which coefficient stands in the table of parts.")
+    if several:
+        names = dict.fromkeys(spoken(part["name"]) for part in parts)
+        said.append(f"It is the law of the {listed([*names])}.")
+    return " ".join(said)
+
+
+def _parameter_ranges(law: str, parts: Sequence[Mapping[str, Any]]) -> dict[str, str]:
+    """Return the values of a law's parameters over some parts, in the units that their names spell."""
+    found = {}
+    for parameter in LAWS[law].parameters:
+        ((name, factor),) = to_si({parameter.name: 1.0}).items()
+        found[parameter.name] = range_text([part["law_parameters"][name] / factor for part in parts], 4)
+    return found
 
 
 def motion_words(motion: Mapping[str, Any] | None) -> str:

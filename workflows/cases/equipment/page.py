@@ -13,6 +13,7 @@ from bulkwear.postproc.tables.summary import NAMES, read_summary
 from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.workflows.cases.equipment import findings, heads, page_blocks
 from bulkwear.workflows.cases.equipment.heads import shown
+from bulkwear.workflows.cases.equipment.machine_tables import laws_of_parts
 from bulkwear.workflows.cases.equipment.page_blocks import read_tables
 from bulkwear.workflows.cases.equipment.phases import PRISTINE
 from bulkwear.workflows.cases.equipment.surfaces import label_of
@@ -158,6 +159,11 @@ def update_words(most: int) -> str:
         f"In up to {most} update{'s' * (most > 1)} a block's wear stands for as many hours as a step of the shape"
         " allows, and for an even share of the operation that is asked for at most."
     )
+
+
+def laws_told(study: Mapping[str, Any]) -> dict[str, str]:
+    """Return {law: what a volume is by it} of all parts that wear."""
+    return laws_of_parts(list(study["parameters"].values()))
 
 
 def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:

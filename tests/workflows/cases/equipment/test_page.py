@@ -10,7 +10,7 @@ import pytest
 
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.workflows.cases.equipment import heads, page, page_blocks
-from bulkwear.workflows.cases.equipment.machine_tables import parts_table
+from bulkwear.workflows.cases.equipment.machine_tables import laws_of_parts, parts_table
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.markdown import written
 from bulkwear.workflows.report.page import write_page
@@ -230,6 +230,35 @@ def test_what_is_simplified_has_the_numbers_of_the_study(finished):
         said = dict(simplifications(page_parameters(study), pd.read_csv(folder / "summary.csv"), page))
     assert said["Coarse-grained particles"].startswith("Spheres of 9.6 to 14.4 mm, 4 times the real ones")
     assert "20 to 30 %" in said["Wear coefficient"] and "60 mm" in said["Patches"]
+    assert "coefficient 6.3e-13 1/Pa" in said["Wear law"] and "coefficient 1e-12 1/Pa" in said["Wear law"]
+    assert "It is the law of the plate." in said["Wear law"] and "LIGGGHTS' Finnie differs" not in said
+
+
+def test_laws_have_the_coefficients_of_their_parts():
+    """Not the one of the section `wear`, which no part may have; parts of a law that differ have their range."""
+    of_part = {"wears": True, "law": "archard", "law_parameters": {}}
+    parts = [of_part | {"name": name, "wear_coefficient_per_pa": 1e-12 * k} for name, k in (("liner", 2), ("lip", 3))]
+    parts.append(of_part | {"name": "hood", "wears": False, "wear_coefficient_per_pa": 6.3e-13})
+    run = {"parts": parts, "wear": {"wear_coefficient_per_pa": 6.3e-13}}
+    ((law, said),) = laws_of_parts([run]).items()
+    assert law == "archard" and "coefficient 2e-12 to 3e-12 1/Pa" in said and said.endswith("in the table of parts.")
+    threshold = {"rolling_ratio": 0.0, "impact_ratio": 0.5, "threshold_velocity_m_per_s": 0.2}
+    known = {"wall_hardness_pa": 2e9, "wear_coefficient_k": 4e-3}
+    parts[1] |= {"law": "combined", "law_parameters": threshold, **known}
+    said = laws_of_parts([run])
+    assert list(said) == ["archard", "combined"] and "6.3e-13" not in "".join(said.values())
+    assert "0.5 m (v - 0.2 m/s)" in said["combined"] and "hardness 2e+09 Pa" in said["combined"]
+    assert said["archard"].endswith("the law of the liner.") and said["combined"].endswith("the law of the lip.")
+
+
+def test_nothing_is_said_of_caps_where_no_shape_was_worn(tmp_path):
+    """There is no share of a volume that nothing was worn by."""
+    kept = pd.DataFrame({"carried_volume_m3": [0.0], "worn_volume_m3": [0.0]})
+    with machine_study(tmp_path, updates={"most": 0}) as study:
+        said = dict(simplifications(page_parameters(study), kept, page))
+        assert "Capped steps" not in said and "The shape is kept as built." in said["Hours from seconds"]
+        both = pd.concat([kept, kept.assign(carried_volume_m3=1.0, worn_volume_m3=4.0)])
+        assert "25 %" in dict(simplifications(page_parameters(study), both, page))["Capped steps"]
 
 
 @pytest.mark.parametrize(
