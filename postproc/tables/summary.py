@@ -67,7 +67,12 @@ def summary_table(design: str | Path, wear_files: Sequence[str | Path]) -> pd.Da
 
 def read_summary(path: str | Path) -> pd.DataFrame:
     """Return a study's summary.csv with names as text."""
-    return pd.read_csv(path, dtype=NAMES)
+    return read_named(path)
+
+
+def read_named(path: str | Path, *further: str) -> pd.DataFrame:
+    """Return a table whose columns of names are text, 01 and NA too; further: columns of text besides NAMES."""
+    return pd.read_csv(path, dtype=NAMES | dict.fromkeys(further, str), keep_default_na=False, na_values=[""])
 
 
 def patterned_name(surfaces: Iterable[str]) -> str:

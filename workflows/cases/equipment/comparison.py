@@ -16,13 +16,17 @@ from bulkwear.workflows.cases.equipment.phases import PRISTINE
 from bulkwear.workflows.cases.equipment.tables import HOURS, Runs, with_ends
 
 LIFE, POWER = "life", "power"
-OF_LAW = ("law", "wear_coefficient_per_pa", "parameters")  # of a part: what one coefficient's error is of
+OF_LAW = ("law", "wear_coefficient_per_pa", "law_parameters")  # of a part: what one coefficient's error is of
 COMPARED = {  # quantity: unit, and whether more of it is better; None: neither
     LIFE: ("h", True),
     "worst_recession": ("mm per 1,000 h", False),
     "steel_lost": ("kg/h", False),
     POWER: ("W", None),
 }
+DESIGNS = [
+    *("quantity", "part", "setting", "unit", "packings", "value", "value_low", "value_high"),
+    *("ratio", "ratio_low", "ratio_high", "verdict"),
+]
 FIRST, UNSAID = "first design", "cannot be said"
 
 
@@ -53,12 +57,12 @@ def designs_table(runs: Runs, lives: Mapping[tuple[str, str], PartLife]) -> pd.D
                 low, high = ratio_ends(ratio, errors)
                 said = FIRST if name == settings[0] else "" if alone else verdict(ratio, low, high, more_is_better)
                 rows.append(row | {"ratio": ratio.value, "ratio_low": low, "ratio_high": high, "verdict": said})
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=DESIGNS)
 
 
 def coefficient_errors(runs: Runs, part: str, setting: str) -> tuple[float, ...]:
     """Return the errors (-, half widths over the coefficient) of the wear coefficients of a part in the first setting
-    and in another one; none where both have one law and coefficient.
+    and in another one; none where both have one law, with equal parameters, and coefficient.
     """
     first, other = (runs.first(name)["parts"][part] for name in (runs.settings[0], setting))
     if all(first.get(key) == other.get(key) for key in OF_LAW):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.equipment.tables import values_of_runs
 from bulkwear.workflows.report.products import Job, OfStudy, every_run, outputs_of, products_of_study, tables
@@ -43,9 +43,18 @@ def of_mills(table: str) -> OfStudy:
     return path
 
 
+def runs_with_laws(study: Study) -> list[dict[str, Any]]:
+    """Return `tables.values_of_runs`, with the parameters (SI) of the wear law of each part: law_parameters."""
+    found = values_of_runs(study)
+    for run, values in zip(study.runs, found, strict=True):
+        for part in run.parameters["parts"]:
+            values["parts"][part["name"]]["law_parameters"] = part["law_parameters"]
+    return found
+
+
 @tables(
     inputs=RUNS,
-    told={"runs": values_of_runs},
+    told={"runs": runs_with_laws},
     tables=TABLES,
     digits=DIGITS,
 )
@@ -99,10 +108,11 @@ def beside_published(job: Job) -> dict[str, pd.DataFrame]:
     """Put what the study computes beside what is published of such machines."""
     import pandas as pd
 
+    from bulkwear.postproc.tables.summary import read_named
     from bulkwear.workflows.cases.equipment.published import beside_anchors, key_numbers
 
     names = (*NUMBERS, *(name for name in OF_MILLS if getattr(job.files, name)))
-    found = {name: pd.read_csv(getattr(job.files, name), dtype={"setting": str}) for name in names}
+    found = {name: read_named(getattr(job.files, name), "part") for name in names}
     computed, anchors = key_numbers(found, job.told.runs), pd.read_csv(job.files.anchors)
     anchors = anchors[anchors["study"] == job.told.study]
     return {"key_numbers": computed, "anchors": beside_anchors(anchors, computed)}

@@ -199,7 +199,7 @@ def answers_on_designs(designs: pd.DataFrame, life: pd.DataFrame) -> list[str]:
     for quantity, words in RATIOS.items():
         rows = designs[designs["quantity"] == quantity]
         first = rows.loc[rows["verdict"] == FIRST].set_index("part")["setting"]
-        for _, row in rows[(rows["verdict"] != FIRST) & np.isfinite(rows["ratio"])].iterrows():
+        for _, row in rows[(rows["verdict"] != FIRST) & rows["ratio"].notna()].iterrows():
             told = words.format(ratio=rounded(row.ratio, 3))
             than = f"The {spoken(row.part)} of {row.setting} {told} as that of {first[row.part]}"
             found.append(f"{than} ({ratio_words(row)}): {verdict_words(row)}.")

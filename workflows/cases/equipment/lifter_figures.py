@@ -52,9 +52,8 @@ def lifters(job: Job) -> dict[str, pd.DataFrame]:
 )
 def lifter_profiles(job: Job) -> Any:
     """Draw height and leading face of lifters against hours of operation."""
-    import pandas as pd
-
+    from bulkwear.postproc.tables.summary import read_named
     from bulkwear.workflows.cases.equipment.plots.lifters import lifter_profiles as draw
 
-    table = pd.read_csv(job.files.lifters, dtype={"setting": str})
+    table = read_named(job.files.lifters, "part")
     return draw(table, job.remarks), table

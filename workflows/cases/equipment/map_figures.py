@@ -39,9 +39,9 @@ def of_study(*names: str) -> dict[str, str]:
 
 def read(job: Job, *names: str) -> list[pd.DataFrame]:
     """Return tables by the names of a job's inputs; settings are words."""
-    import pandas as pd
+    from bulkwear.postproc.tables.summary import read_named
 
-    return [pd.read_csv(getattr(job.files, name), dtype={"setting": str}) for name in names]
+    return [read_named(getattr(job.files, name), "part") for name in names]
 
 
 def folder_of(job: Job) -> Path:

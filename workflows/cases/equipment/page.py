@@ -6,10 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import pandas as pd
-
 from bulkwear.postproc.tables.law_volumes import laws_of_settings
-from bulkwear.postproc.tables.summary import NAMES, read_summary
+from bulkwear.postproc.tables.summary import read_named, read_summary
 from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.workflows.cases.equipment import findings, heads, page_blocks
 from bulkwear.workflows.cases.equipment.heads import shown
@@ -86,7 +84,7 @@ def _answer_on_laws(file: Path) -> list[str]:
     """Return on which design laws disagree, of a study that compares them: by parts or beside its own."""
     if not file.is_file():
         return []
-    volumes = pd.read_csv(file, dtype=NAMES)
+    volumes = read_named(file)
     asked = volumes["law"].map(lambda law: bool(LAWS[law].kernels or LAWS[law].parameters))
     if volumes.loc[asked | (volumes["over_study_law"] == 1.0), "law"].nunique() < SEVERAL:
         return []

@@ -9,6 +9,7 @@ from typing import Any
 
 import pandas as pd
 
+from bulkwear.postproc.tables.summary import read_named
 from bulkwear.workflows.cases.equipment import findings, heads
 from bulkwear.workflows.cases.equipment.figures import BESIDE_PUBLISHED, LIFTERS, TABLES
 from bulkwear.workflows.cases.equipment.findings import Tables
@@ -58,7 +59,7 @@ def read_tables(folder: Path) -> dict[str, pd.DataFrame]:
     """Return the tables of a study by name, those of mills where it has them; empty words are ""."""
     of_mills = {name: path for name, path in LIFTERS.items() if (folder / path).exists()}
     paths = TABLES | BESIDE_PUBLISHED | of_mills
-    found = {name: pd.read_csv(folder / path, dtype=dict.fromkeys(WORDS, str)) for name, path in paths.items()}
+    found = {name: read_named(folder / path, "part", *WORDS) for name, path in paths.items()}
     return {
         name: table.assign(**{word: table[word].fillna("") for word in WORDS if word in table})
         for name, table in found.items()

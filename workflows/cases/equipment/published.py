@@ -98,7 +98,7 @@ def _less_steel(designs: pd.DataFrame) -> Rows:
     """Return by how much less steel the parts of each design lose than those of the first one."""
     rows = []
     chosen = designs[(designs["quantity"] == "steel_lost") & (designs["verdict"] != FIRST)]
-    for row in chosen[np.isfinite(chosen["ratio"])].itertuples():
+    for row in chosen[chosen["ratio"].notna()].itertuples():
         less = (100.0 * (1.0 - ratio) for ratio in (row.ratio, row.ratio_high, row.ratio_low))
         rows.append(_row(row, f"less_steel_lost_{row.part}", "%", *less))
     return rows

@@ -8,7 +8,18 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.statistics.intervals import UNKNOWN
-from bulkwear.workflows.cases.equipment import comparison, findings, flow_tables, life, life_tables, tables
+from bulkwear.postproc.tables.summary import read_named
+from bulkwear.workflows.cases.equipment import (
+    comparison,
+    findings,
+    flow_tables,
+    life,
+    life_tables,
+    published,
+    tables,
+)
+from bulkwear.workflows.cases.equipment.figures import runs_with_laws
+from tests.support.own_machine_project import machine_study
 from tests.workflows.cases.equipment.synthetic import SyntheticPart, SyntheticRun, write_study
 
 LINER = SyntheticPart("back_liner", (1e-6, 5e-6), error=0.2)
@@ -24,6 +35,7 @@ def packings(setting, factors, **given):
     ]
 
 
+BY_IMPACTS = {"plate": {"law": "impact_threshold", "wear_coefficient_per_pa": 1e-11}}
 TABLES = {
     "life": life_tables.life_table,
     "designs": comparison.designs_table,
@@ -196,6 +208,29 @@ def test_errors_of_two_coefficients_are_in_the_ratio(found):
     assert power["verdict"] != comparison.UNSAID and power["ratio_high"] < 0.85
 
 
+def test_parameters_of_a_law_make_another_coefficient_of_it(found, tmp_path):
+    """A threshold of its own in the second design: the errors of both coefficients are in the ratio."""
+    runs = [*packings("A", (0.98, 1.0, 1.02)), *packings("B", (0.98, 1.0, 1.02))]
+    values, ends = write_study(tmp_path, runs), {}
+    for threshold in (0.1, 0.5):
+        for run in values:
+            own = threshold if run["setting"] == "B" else 0.1
+            run["parts"]["back_liner"]["law_parameters"] = {"threshold_velocity_m_per_s": own}
+        read = tables.read_runs(values, tmp_path)
+        table = comparison.designs_table(read, life.part_lives(read, {})).set_index(["quantity", "setting"])
+        ends[threshold] = table.loc[("life", "B"), "ratio_low"]
+    assert ends[0.5] < 1.0 - LINER.error < ends[0.1]
+
+
+def test_tables_are_told_the_parameters_of_the_laws_of_parts(tmp_path):
+    """A row's own threshold of one part stands with that part of its run alone."""
+    name = "threshold_velocity_m_per_s"
+    with machine_study(tmp_path, f"row,parts.plate.parameters.{name}\nA,0.1\nB,0.5\n", parts=BY_IMPACTS) as study:
+        told = runs_with_laws(study)
+    assert [run["parts"]["plate"]["law_parameters"][name] for run in told] == [0.1, 0.5]
+    assert all(run["parts"]["liner"]["law_parameters"] == {} for run in told)
+
+
 def test_neither_more_nor_less_power_is_better(found):
     """Of power it is told which is larger."""
     parts = {"parts": (WHEEL,)}
@@ -212,6 +247,17 @@ def test_part_that_the_first_design_has_not_is_not_compared(found):
     alone = table[(table["part"] == "wheel") & (table["quantity"] == "life")].iloc[0]
     assert alone["setting"] == "B" and np.isnan(alone["ratio"]) and alone["verdict"] == ""
     assert all("wheel" not in each for each in findings.answers_on_designs(table, found("life", runs)))
+
+
+def test_nothing_is_compared_where_nothing_wears(found, tmp_path):
+    """The table has its columns and no rows, also when it is read again; there is no answer."""
+    still = replace(RUN, parts=(SyntheticPart("back_liner", (0.0, 0.0)),))
+    designs = found("designs", [still])
+    designs.to_csv(tmp_path / "designs.csv", index=False)
+    read = read_named(tmp_path / "designs.csv")
+    assert read.empty and list(read) == comparison.DESIGNS
+    assert findings.answers_on_designs(read, found("life", [still])) == []
+    assert published._less_steel(read) == []
 
 
 # ---------------------------------------------------------------- worn shape, flow, balance

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bulkwear.postproc.tables.summary import read_named
 from bulkwear.workflows.cases.equipment import flow_tables, tables
 from tests.workflows.cases.equipment.synthetic import SyntheticPart, SyntheticRun, values_of, write_study
 
@@ -29,6 +30,15 @@ def packings(setting="plain", factors=SPREAD, parts=PARTS, **given):
 def read(tmp_path):
     """What reads a synthetic study."""
     return lambda runs: tables.read_runs(write_study(tmp_path, runs), tmp_path)
+
+
+def test_names_of_rows_are_text(tmp_path):
+    """01 keeps its nought, and NA is a name; what is empty is no value."""
+    table = pd.DataFrame({"run": ["01", "NA"], "setting": ["01", "NA"], "part": ["null", ""], "value": [1.0, np.nan]})
+    table.to_csv(tmp_path / "table.csv", index=False)
+    found = read_named(tmp_path / "table.csv", "part")
+    assert found["run"].tolist() == found["setting"].tolist() == ["01", "NA"]
+    assert found["part"].fillna("").tolist() == ["null", ""] and found["value"].isna().tolist() == [False, True]
 
 
 def test_rates_are_those_of_the_blocks(read):
