@@ -134,12 +134,17 @@ def earlier_words(row: pd.Series) -> str:
 
 
 def faster_words(row: pd.Series) -> str:
-    """Return which place of unknown thickness wears faster than the one that decides; nothing where none does."""
+    """Return which place without a life wears faster than the one that decides, and why it has none; nothing where
+    there is none.
+    """
     if not np.isfinite(row.faster_mm_per_1000h):
         return ""
     rate = f"{rounded(row.faster_mm_per_1000h)} mm per 1,000 h"
     where = coordinates(row, "faster_")
-    return f"The place at ({where}) mm loses more, {rate}, and is left out, because its thickness is not known."
+    why = "its thickness is not known"
+    if np.isfinite(row.faster_thickness_mm):
+        why = f"the {rounded(row.faster_thickness_mm)} mm that it has as built are no more than what shall remain"
+    return f"The place at ({where}) mm loses more, {rate}, and is left out, because {why}."
 
 
 def how_words(row: pd.Series) -> str:
@@ -156,9 +161,9 @@ def how_words(row: pd.Series) -> str:
 
 def changed_rate_words(row: pd.Series) -> str:
     """Return how far wear has changed a rate that goes on; nothing where it was followed or hardly changed."""
-    if row.how not in (PARTLY, EXTRAPOLATED) or not row.pristine_mm_per_1000h > 0.0:
+    factor = row.worn_over_built
+    if row.how not in (PARTLY, EXTRAPOLATED) or not np.isfinite(factor):
         return ""
-    factor = row.worn_mm_per_1000h / row.pristine_mm_per_1000h
     if not max(factor, 1.0 / factor if factor > 0.0 else math.inf) > LEAST_RATE_CHANGE:
         return ""
     return f", {rounded(factor)} times that as built: a further change is in no interval"

@@ -28,6 +28,7 @@ RULES = ("change_out_remaining_m", "change_out_remaining_fraction", "change_out_
 BY_MASS = "change_out_worn_mass_fraction"
 FOLLOWED, PARTLY, EXTRAPOLATED, AS_BUILT = "followed", "partly followed", "last rate goes on", "rate as built goes on"
 NO_THICKNESS, NO_VOLUME = "its thickness is not known", "its mass is not known: its surface is open"
+TOO_THIN = "it is nowhere thicker as built than what shall remain"
 NO_WEAR = "nothing wears it in the time simulated"
 RARE = "some packings do not wear it at all where it wears most, so that more has to be simulated"
 LATEST = 4  # blocks at least whose mean rate goes on: where fewer are on the worn shape, those of updates before too
@@ -46,7 +47,9 @@ class Earlier:
 
 @dataclass(frozen=True)
 class Faster:
-    """A place that wears faster than the one that decides, of unknown thickness; rate: m/h, the last one."""
+    """A place that wears faster than the one that decides, and may lose nothing that is known: its thickness is not, or
+    is no more than what shall remain; rate: m/h, the last one.
+    """
 
     patch: int
     rate: float
@@ -98,7 +101,7 @@ class PartLife:
     error: -, half width of the coefficient's interval over it; how: FOLLOWED, PARTLY or EXTRAPOLATED
     blocks: behind the last rate, of all packings; agreement: -, share of packings (blocks) that name that very place
     earlier: the shortest life of one packing where that is much shorter, None where it is not
-    faster: the fastest place of unknown thickness that wears faster than the deciding one, None without
+    faster: the fastest place that wears faster than the deciding one and has no life, None without
     reason: why there is no life, "" where there is one
     """
 
@@ -185,7 +188,9 @@ def part_life(runs: Runs, setting: str, part: str, volume: float = math.nan) -> 
     else:
         places, courses = patch_courses(runs, setting, part)
         patches, allowed = places.index.to_numpy(), allowed_depths(places["thickness_m"].to_numpy(), rule)
-    return _life(patches, allowed, courses, error)
+        if places["thickness_m"].notna().any():
+            return _life(patches, allowed, courses, error, TOO_THIN)
+    return _life(patches, allowed, courses, error, NO_VOLUME if BY_MASS in rule else NO_THICKNESS)
 
 
 def allowed_depths(thickness: np.ndarray, rule: Mapping[str, Any]) -> np.ndarray:
@@ -197,7 +202,10 @@ def allowed_depths(thickness: np.ndarray, rule: Mapping[str, Any]) -> np.ndarray
     return allowed_depth(thickness, remaining, fraction)
 
 
-def _life(patches: np.ndarray, allowed: np.ndarray, courses: Sequence[Course], error: float) -> PartLife:
+def _life(
+    patches: np.ndarray, allowed: np.ndarray, courses: Sequence[Course], error: float, none_allowed: str
+) -> PartLife:
+    """Return the life of a part; none_allowed: the reason why there is none where no place may lose anything."""
     nothing = Estimate(math.nan, math.nan, 0, len(courses), log=True)
     simulated = float(np.mean([course.hours[-1] for course in courses]))
     blocks = sum(len(course.last) for course in courses)
@@ -218,7 +226,7 @@ def _life(patches: np.ndarray, allowed: np.ndarray, courses: Sequence[Course], e
         )
 
     if not np.isfinite(allowed).any():
-        return without(NO_VOLUME if patches[0] == WHOLE_PART else NO_THICKNESS)
+        return without(none_allowed)
     loads = np.array([1.0 / course.until(allowed, course.last.mean(axis=0)) for course in courses])
     pristine = np.vstack([course.pristine for course in courses])
     of_blocks = np.repeat([course.packing for course in courses], [len(course.pristine) for course in courses])
@@ -249,7 +257,7 @@ def _life(patches: np.ndarray, allowed: np.ndarray, courses: Sequence[Course], e
 
 
 def _faster(rates: np.ndarray, allowed: np.ndarray, place: int, patches: np.ndarray) -> Faster | None:
-    """Return the fastest place without a known thickness that wears faster than the one that decides; rates: (p,)."""
+    """Return the fastest place without a life that wears faster than the one that decides; rates: (p,)."""
     unknown = np.where(np.isfinite(allowed), -math.inf, rates)
     fastest = int(unknown.argmax())
     return Faster(int(patches[fastest]), float(rates[fastest])) if unknown[fastest] > rates[place] else None

@@ -16,6 +16,7 @@ from bulkwear.postproc.statistics.worst_place import geometric_mean
 from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.postproc.wear.directions import ON_END
 from bulkwear.workflows.cases.equipment.life import (
+    AS_BUILT,
     BY_MASS,
     WHOLE_PART,
     WORST,
@@ -81,6 +82,7 @@ def _volume(points: np.ndarray, triangles: np.ndarray, periodic: Mapping[str, An
 def life_table(runs: Runs, lives: Lives) -> pd.DataFrame:
     """Return a row per setting and part that wears: the place that decides and its life in h, Mt and years.
 
+    worn_mm_per_1000h, worn_over_built: NaN where no shape was worn; of a rule by mass only the second is known
     life_low_h, life_high_h: with scatter and coefficient; scatter_..., coefficient_...: with one of them alone; of one
     packing the scatter is that of its blocks, which tells nothing of another packing; surface_runs: whether the part
     stays where it is and its surface runs
@@ -116,11 +118,11 @@ def _place(runs: Runs, setting: str, part: str, patch: int) -> dict[str, float]:
 
 
 def _faster(runs: Runs, setting: str, part: str, life: PartLife) -> dict[str, Any]:
-    """Return the place of unknown thickness that wears faster than the deciding one, NaN where there is none."""
+    """Return the place without a life that wears faster than the deciding one, NaN where there is none."""
     found = life.faster
     where = _place(runs, setting, part, found.patch if found else WHOLE_PART)
     rate = found.rate * MILLIMETRES * HOURS if found else math.nan
-    return {"faster_mm_per_1000h": rate} | {f"faster_{axis}_mm": where[f"{axis}_mm"] for axis in PLACE}
+    return {"faster_mm_per_1000h": rate} | {f"faster_{name}_mm": where[f"{name}_mm"] for name in (*PLACE, "thickness")}
 
 
 def _earlier(runs: Runs, setting: str, part: str, life: PartLife) -> dict[str, Any]:
@@ -137,6 +139,7 @@ def _lives_in_hours(life: PartLife) -> dict[str, float]:
     scatter, coefficient = life.ends(coefficient=False), life.ends(scatter=False)
     pristine = life.pristine_life
     rate = MILLIMETRES * HOURS if life.patch != WHOLE_PART else math.nan
+    worn = life.worn if life.how != AS_BUILT else math.nan
     return {
         "life_h": life.life.value,
         **{"life_low_h": low, "life_high_h": high},
@@ -145,7 +148,8 @@ def _lives_in_hours(life: PartLife) -> dict[str, float]:
         "coefficient_error": life.error,
         **with_ends("pristine_life_h", pristine),
         "pristine_mm_per_1000h": life.pristine * rate,
-        "worn_mm_per_1000h": life.worn * rate,
+        "worn_mm_per_1000h": worn * rate,
+        "worn_over_built": worn / life.pristine if life.pristine > 0.0 else math.nan,
     }
 
 

@@ -98,6 +98,13 @@ def test_rule_of_mass(lives):
     assert row["patch"] == WHOLE_PART and np.isnan(row["x_mm"])
 
 
+def test_rule_of_mass_tells_a_rate_that_wear_was_changing(lives):
+    """As a rule of thickness does; the rate is that of the whole part."""
+    run = with_rule(replace(ONE, parts=(replace(UNIFORM, worn=1.5),), worn=4), change_out_worn_mass_fraction=0.5)
+    row = lives(run, volumes={("plain", "liner"): 4 * SIDE**2 * THICKNESS})[2].iloc[0]
+    assert "the last rate goes on, 1.5 times that as built" in findings.life_sentence(row, False)
+
+
 def test_volume_of_a_part_is_that_of_its_body(tmp_path):
     """Labels are the numbers of the parts; a rigid one has none."""
     mesh = box((0.4, 0.2, 0.1), 2)
@@ -180,6 +187,19 @@ def test_a_faster_place_of_unknown_thickness_is_told(lives):
         assert ("mm loses more, 10 mm per 1,000 h, and is left out" in said) == np.isfinite(rate)
 
 
+def test_a_place_that_is_thinner_as_built_than_what_shall_remain_is_told(lives):
+    """Its thickness is known: that is not why it has no life; nor of a part that is so thin all over."""
+    part = SyntheticPart("liner", (1e-5, 1e-6, 5e-7))
+    runs, _, _ = lives(with_rule(replace(ONE, parts=(part,)), change_out_remaining_m=0.01))
+    left_out = "the 8.0 mm that it has as built are no more than what shall remain"
+    for thin, words in (((0,), left_out), (range(3), life.TOO_THIN)):
+        thickness = runs.patches["thickness_m"].where(~runs.patches["patch"].isin(thin), 0.008)
+        changed = replace(runs, patches=runs.patches.assign(thickness_m=thickness))
+        row = life_tables.life_table(changed, life.part_lives(changed, {})).iloc[0]
+        said = findings.life_sentence(row, False)
+        assert words in said and "its thickness is not known" not in said
+
+
 def test_part_that_nothing_wears_has_no_life(lives):
     """Its reason is another one."""
     table = lives(replace(ONE, parts=(UNIFORM, SyntheticPart("shelf", (0.0, 0.0)))))[2]
@@ -232,6 +252,7 @@ def test_shape_as_built_alone(lives):
     """Without updates the life is that of the rate as built."""
     row = lives(replace(ONE, updates=0, worn=0))[2].iloc[0]
     assert row["how"] == AS_BUILT and row["life_h"] == pytest.approx(THICKNESS / RATE, rel=RELATIVE)
+    assert np.isnan(row[["worn_mm_per_1000h", "worn_over_built"]].to_numpy(float)).all()
 
 
 @pytest.mark.parametrize(("worn", "share"), [(0, 0.0), (1, 0.25), (3, 0.75), (4, 1.0), (6, 1.0)])
