@@ -13,7 +13,7 @@ from bulkwear.postproc.statistics.steady import DRIFTING, STEADY
 from bulkwear.postproc.statistics.steady import UNSAID as NOT_SAID
 from bulkwear.postproc.tables.summary import THROUGH
 from bulkwear.workflows.cases.equipment.comparison import FIRST, LIFE, UNSAID
-from bulkwear.workflows.cases.equipment.life import AS_BUILT, EXTRAPOLATED, FOLLOWED, PARTLY, WHOLE_PART
+from bulkwear.workflows.cases.equipment.life import AS_BUILT, EXTRAPOLATED, FOLLOWED, NO_WEAR, PARTLY, WHOLE_PART
 from bulkwear.workflows.cases.equipment.phases import PRISTINE
 from bulkwear.workflows.report.sentences import listed, spoken
 
@@ -68,7 +68,9 @@ def answers_on_life(life: pd.DataFrame) -> list[str]:
 
 
 def answers_on_first_change(life: pd.DataFrame) -> list[str]:
-    """Return of each setting which part is changed first, and when; nothing where each has one part alone."""
+    """Return of each setting which part is changed first, and when; nothing where each has one part alone. Parts that
+    wear and whose life cannot be said may be changed earlier.
+    """
     known = life[np.isfinite(life["life_h"])]
     if not known.duplicated("setting").any():
         return []
@@ -76,9 +78,19 @@ def answers_on_first_change(life: pd.DataFrame) -> list[str]:
     several = life["setting"].nunique() > 1
     return [
         f"{f'Design {row.setting}: the' if several else 'The'} {spoken(row.part)} is changed first, after "
-        f"{rounded(row.life_h)} h ({interval_words(row)})."
+        f"{rounded(row.life_h)} h ({interval_words(row)}){unless_words(life[life['setting'] == row.setting])}."
         for _, row in rows.iterrows()
     ]
+
+
+def unless_words(life: pd.DataFrame) -> str:
+    """Return that parts whose life cannot be said may be changed earlier; nothing where there are none that wear."""
+    open_ = life[~np.isfinite(life["life_h"]) & (life["reason"] != NO_WEAR)]
+    if open_.empty:
+        return ""
+    names = listed([f"the {spoken(part)}" for part in open_["part"]])
+    several = len(open_) > 1
+    return f", unless {names} {'are' if several else 'is'}: how long {'they last' if several else 'it lasts'} is open"
 
 
 def life_sentence(row: pd.Series, several: bool) -> str:

@@ -97,6 +97,21 @@ def test_what_happens_in_one_packing_alone_is_said(found):
     assert "alone" not in said
 
 
+@pytest.mark.parametrize(
+    ("part", "said"),
+    [
+        (SyntheticPart("lip", (9e-6,), thickness=None), ", unless the lip is: how long it lasts is open."),
+        (SyntheticPart("lip", (0.0,)), ")."),
+        (SyntheticPart("lip", (1e-7,)), ")."),
+    ],
+)
+def test_the_first_change_leaves_parts_of_unknown_life_open(found, part, said):
+    """A part of unknown thickness may go first; one that nothing wears does not."""
+    parts = (LINER, replace(WHEEL, thickness=0.1), part)
+    (first,) = findings.answers_on_first_change(found("life", packings("plain", (0.98, 1.0, 1.02), parts=parts)))
+    assert first.startswith("The back liner is changed first, after 6,000 h (") and first.endswith(said)
+
+
 def test_one_packing_is_unknown(found):
     """Its scatter is, whatever its own blocks and the coefficient give."""
     few = replace(RUN, pristine=1, updates=1, worn=1)
