@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -159,6 +159,12 @@ def update_words(most: int) -> str:
     )
 
 
+def updates_words(most: Sequence[int]) -> str:
+    """Return what a block's wear stands for; most: updates of the shape of each run, at most."""
+    kept = "In some designs the shape is kept as built. " if min(most) < 1 <= max(most) else ""
+    return kept + update_words(max(most))
+
+
 def laws_told(study: Mapping[str, Any]) -> dict[str, str]:
     """Return {law: what a volume is by it} of all parts that wear."""
     return laws_of_parts(list(study["parameters"].values()))
@@ -169,6 +175,7 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     settings, runs = study["settings"], list(study["parameters"].values())
     scales = range_text([run["particle"]["scale"] for run in runs], 4)
     diameters = [1e3 * diameter for run in runs for diameter in run["particle"]["diameters_m"]]
+    patches = [1e3 * run["sampling"]["patch_m"] for run in runs]
     errors = [100.0 * part["wear_coefficient_error"] for run in runs for part in run["parts"] if part["wears"]]
     return [
         (
@@ -181,7 +188,7 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         (
             "Hours from seconds",
             "Each block of simulated time tells the rate of wear per hour of operation, with the true coefficient. "
-            + update_words(settings["updates"]["most"]),
+            + updates_words([run["updates"]["most"] for run in runs]),
         ),
         (
             "Steady operation",
@@ -196,7 +203,6 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         ),
         (
             "Patches",
-            f"Rates are means over patches of about {settings['sampling']['patch_mm']:g} mm: deeper spots within one "
-            "are not told.",
+            f"Rates are means over patches of about {range_text(patches, 4)} mm: deeper spots within one are not told.",
         ),
     ]

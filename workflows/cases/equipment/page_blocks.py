@@ -16,6 +16,7 @@ from bulkwear.workflows.cases.equipment.findings import Tables
 from bulkwear.workflows.cases.equipment.heads import shown
 from bulkwear.workflows.cases.equipment.machine_tables import feed_table, operation_words, parts_table
 from bulkwear.workflows.report.sections import Block, Cards, Listing, Points, Table, Text
+from bulkwear.workflows.report.sentences import capital, listed, spoken
 from bulkwear.workflows.report.text import range_text
 
 WORDS = (  # columns of text
@@ -77,15 +78,36 @@ def life(found: Tables) -> list[Block]:
 
 def machine(machines: Mapping[str, Mapping[str, Any]]) -> list[Block]:
     """Return parts, feed and operation of the machines."""
-    first = next(iter(machines.values()))
     sizes = list(dict.fromkeys(run["particle"]["sizes"] for run in machines.values()))
     feed = feed_table(machines)
     return [
         Table(parts_table(machines), "parts"),
         Table(heads.readable(feed.drop(columns="setting") if len(feed) == 1 else feed), "feed"),
-        Text(f"{first['particle']['name'].replace('_', ' ').capitalize()}; sizes: {'; '.join(sizes).rstrip('.')}."),
-        Points(list(dict.fromkeys(operation_words(run) for run in machines.values()))),
+        Text(f"{materials_words(machines)}; sizes: {'; '.join(sizes).rstrip('.')}."),
+        Points(operations(machines)),
     ]
+
+
+def materials_words(machines: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return the bulk material, of designs with different ones which design has which."""
+    of = _designs_of({setting: spoken(run["particle"]["name"]) for setting, run in machines.items()})
+    return capital(listed([name if len(of) == 1 else f"{name} in {listed(own)}" for name, own in of.items()]))
+
+
+def operations(machines: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Return what operation is predicted and when liners are changed; of different ones which is of which designs."""
+    of = _designs_of({setting: operation_words(run) for setting, run in machines.items()})
+    if len(of) == 1:
+        return list(of)
+    return [f"{'Designs' if len(own) > 1 else 'Design'} {listed(own)}: {said}" for said, own in of.items()]
+
+
+def _designs_of(words: Mapping[str, str]) -> dict[str, list[str]]:
+    """Return {words: the settings that have them} of {setting: its words}."""
+    found: dict[str, list[str]] = {}
+    for setting, said in words.items():
+        found.setdefault(said, []).append(setting)
+    return found
 
 
 def flow(found: Tables) -> list[Block]:

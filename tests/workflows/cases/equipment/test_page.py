@@ -4,6 +4,7 @@ import html
 import json
 import shutil
 from contextlib import contextmanager
+from dataclasses import replace
 
 import pandas as pd
 import pytest
@@ -26,7 +27,7 @@ from bulkwear.workflows.report.products import (
 from bulkwear.workflows.report.sections import Pictures, Points, Text
 from bulkwear.workflows.report.text import simplifications
 from bulkwear.workflows.report.verdict import verdict, with_verdict
-from tests.support.own_machine_project import machine_study
+from tests.support.own_machine_project import ORE, TINY, machine_study
 from tests.workflows.cases.equipment.synthetic import SyntheticPart, SyntheticRun, write_study
 
 ROWS = "row,inlet.rate_t_per_h\nslow,1.5\nfast,3\n"
@@ -267,6 +268,23 @@ def test_nothing_is_said_of_caps_where_no_shape_was_worn(tmp_path):
 def test_updates_are_counted_in_words(most, said):
     """One, several, and none."""
     assert page.update_words(most).startswith(said)
+
+
+def test_designs_of_different_settings_are_told_apart(tmp_path):
+    """Bulk material, hours, updates and patches that are columns of the design are those of its rows."""
+    rows = "row,bulk.material,operation.duration_h,updates.most,sampling.patch_mm\nA,,,,\nB,sand,800,0,70\n"
+    machine = replace(TINY, materials={"particles": {"ore": ORE, "sand": ORE}})
+    with machine_study(tmp_path, rows, machine) as study:
+        machines = {run.name: run.parameters for run in study.runs}
+        said = dict(page.simplifications(page_parameters(study)))
+    assert page_blocks.materials_words(machines) == "Ore in A and sand in B"
+    first, second = page_blocks.operations(machines)
+    assert first.startswith("Design A: ") and "400 h of operation are asked for" in first
+    assert second.startswith("Design B: ") and "800 h of operation are asked for" in second
+    assert "In some designs the shape is kept as built. In up to 2 updates" in said["Hours from seconds"]
+    assert "about 60 to 70 mm" in said["Patches"]
+    alike = {"A": machines["A"], "C": machines["A"]}
+    assert page_blocks.materials_words(alike) == "Ore" and len(page_blocks.operations(alike)) == 1
 
 
 def test_what_updates_stood_for():
