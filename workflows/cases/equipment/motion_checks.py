@@ -52,17 +52,32 @@ def motions_move(run: CheckedRun) -> Fault | None:
             slow = " or nearly" if given[still] else ""
             return f"{key}.{WRITTEN.get(still, still)}", f"{many}{slow}, or a part without motion"
         full = motion.get("start_s", 0.0) + motion.get("ramp_s", 0.0)
-        stop = motion.get("stop_s", math.inf)
-        if stop < full or not stop:
-            bound = (
-                f"at least {full:g} s, start_s and ramp_s together" if full else "above 0 s: the part would never move"
-            )
+        if bound := _allowed_stop(run.parameters, motion, full):
             return f"{key}.stop_s", bound
         if full > start_up:
             late = "start_s" if "start_s" in motion else "ramp_s"
             return f"{key}.{late}", f"full speed within start_up.most_s, {start_up:g} s, found {full:g} s"
         motion_of(motion)  # raises ValueError for what is not known here
     return None
+
+
+def _allowed_stop(parameters: Mapping[str, Any], motion: Mapping[str, Any], full: float) -> str | None:
+    """Return when a motion that has its full speed after `full` (s) may stop, None where it stops then or never.
+
+    It stands before wear is counted, or not in the longest run: the mean wear of a part that moves for a while is that
+    of no operation.
+    """
+    stop, start_up = motion.get("stop_s", math.inf), parameters["start_up"]["most_s"]
+    if stop < full or not stop:
+        return f"at least {full:g} s, start_s and ramp_s together" if full else "above 0 s: the part would never move"
+    longest = most_blocks(parameters) * parameters["sampling"]["block_s"]
+    if stop + motion.get("ramp_s", 0.0) <= start_up or stop >= longest:
+        return None
+    with_ramp = ", less ramp_s" if "ramp_s" in motion else ""
+    return (
+        f"at most start_up.most_s, {start_up:g} s{with_ramp}, or at least the longest that the run may get,"
+        f" {longest:.4g} s: hours are told of a part that moves or stands all the time that wear is counted"
+    )
 
 
 def swings_are_seen(run: CheckedRun) -> Fault | None:

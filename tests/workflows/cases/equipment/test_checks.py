@@ -200,6 +200,16 @@ MOTIONS = [
         "parts.plate.motion.stop_s is 0",
         "above 0 s: the part would never move",
     ),
+    (
+        motion(**TURNS, stop_s=0.5),
+        "parts.plate.motion.stop_s is 0.5",
+        "at most start_up.most_s, 0.45 s, or at least the longest that the run may get, 1.35 s: hours are told",
+    ),
+    (
+        motion(**TURNS, ramp_s=0.1, stop_s=0.4),
+        "parts.plate.motion.stop_s is 0.4",
+        "at most start_up.most_s, 0.45 s, less ramp_s, or at least",
+    ),
     *(
         (
             motion(kind="oscillation", amplitude_mm=[0, 0, 1], period_s=period),
