@@ -50,8 +50,8 @@ def folder_of(job: Job) -> Path:
 
 
 def deforms(study: Study) -> bool:
-    """Return whether wear is applied to the shape in a study."""
-    return study.settings["updates"]["most"] > 0
+    """Return whether wear is applied to the shape in a run of a study; the updates may be a column of its design."""
+    return any(run.parameters["updates"]["most"] > 0 for run in study.runs)
 
 
 def tells_what_is_left(study: Study) -> bool:

@@ -226,10 +226,15 @@ def test_thickness_at_which_a_part_is_changed(rule, due):
 @pytest.mark.parametrize(("told", "left_out"), [((), {"remaining_thickness"}), ((3600.0,), set())])
 def test_a_study_without_updates_has_no_sections(told, left_out):
     """All else is drawn of any study of the case; what is left, where it is asked for at some hours."""
-    run = SimpleNamespace(parameters={"operation": {"told_at_s": told} if told else {}})
+    own = {"operation": {"told_at_s": told} if told else {}, "updates": {"most": 0}}
+    run, every = SimpleNamespace(parameters=own), {make.product.name for make in FIGURES}
     rigid = SimpleNamespace(settings={"updates": {"most": 0}}, runs=[run])
-    there = {make.product.name for make in FIGURES if make.product.when(rigid)}
-    assert there == {make.product.name for make in FIGURES} - {"profile_sections"} - left_out
+    assert {make.product.name for make in FIGURES if make.product.when(rigid)} == every - {
+        "profile_sections"
+    } - left_out
+    worn = SimpleNamespace(parameters=own | {"updates": {"most": 1}})  # by a column of the design
+    some = SimpleNamespace(settings=rigid.settings, runs=[run, worn])
+    assert {make.product.name for make in FIGURES if make.product.when(some)} == every
 
 
 def test_lives_in_the_table_are_those_beside_the_figure(study):
