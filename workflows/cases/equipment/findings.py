@@ -23,6 +23,7 @@ DIGITS = 2  # significant ones of an answer, whose interval is wide
 SMALLEST_CHANGE = 0.1  # %, below which a change is called none
 LEAST_RATE_CHANGE = 1.1  # -, factor of a rate by wear of the shape, from which on its further change is asked for
 STEADINESS = {STEADY: "steady", DRIFTING: "not steady", NOT_SAID: "not known to be steady"}
+SAME_FEED = 1e-6  # -, relative: numbers of tables have nine digits
 FROM_ONE = 1.0  # number of packings of which the scatter is unknown
 PER_CENT = f"{100.0 * CONFIDENCE:.0f} %"
 CANNOT_BE_SAID = "which is better cannot be said"
@@ -211,7 +212,7 @@ def answers_on_designs(designs: pd.DataFrame, life: pd.DataFrame) -> list[str]:
     """Return how each design compares with the first one, whether the interval says which is better, and whose life
     hangs on a rate that wear was changing.
     """
-    found = []
+    found, feeds = [], feeds_of(life)
     changing = {(row.setting, row.part): changed_rate_words(row) for _, row in life.iterrows()}
     for quantity, words in RATIOS.items():
         rows = designs[designs["quantity"] == quantity]
@@ -221,9 +222,37 @@ def answers_on_designs(designs: pd.DataFrame, life: pd.DataFrame) -> list[str]:
             than = f"The {spoken(row.part)} of {row.setting} {told} as that of {first[row.part]}"
             found.append(f"{than} ({ratio_words(row)}): {verdict_words(row)}.")
             hanging = [name for name in (row.setting, first[row.part]) if changing.get((name, row.part))]
+            feed = feeds.get(row.setting, math.nan) / feeds.get(first[row.part], math.nan)
+            found[-1] += per_mt_words(row, feed)
             if quantity == LIFE and hanging:
                 found[-1] += f" That is if the last rate of {listed(hanging)} goes on, which wear was changing."
     return found
+
+
+def feeds_of(life: pd.DataFrame) -> dict[str, float]:
+    """Return what each setting is fed (Mt/h), by the lives that are known in h and Mt."""
+    known = life[np.isfinite(life["life_h"]) & np.isfinite(life["life_Mt"])]
+    return (known["life_Mt"] / known["life_h"]).groupby(known["setting"]).first().to_dict()
+
+
+def per_mt_words(row: pd.Series, feed: float) -> str:
+    """Return the ratio of a life in Mt, or of the steel lost per Mt, of a design that is fed at another rate than the
+    first one; nothing where both have one rate or none. feed: the design's rate over the first one's
+    """
+    if not math.isfinite(feed) or math.isclose(feed, 1.0, rel_tol=SAME_FEED):
+        return ""
+    lasts = row.quantity == LIFE
+    factor = feed if lasts else 1.0 / feed
+    scaled = row.copy()
+    for name in ("ratio", "ratio_low", "ratio_high"):
+        scaled[name] = factor * row[name]
+    if not np.isfinite(scaled.ratio_low) or scaled.ratio_low <= 1.0 <= scaled.ratio_high:
+        said = CANNOT_BE_SAID
+    else:
+        said = f"that is {'better' if (scaled.ratio_low > 1.0) == lasts else 'worse'}"
+    what = "its life in Mt is" if lasts else "per Mt it loses"
+    ratio = f"{rounded(scaled.ratio, 3)} times {'that' if lasts else 'as much'} ({ratio_words(scaled)})"
+    return f" It is fed {rounded(feed, 3)} times as much; {what} {ratio}: {said}."
 
 
 def ratio_words(row: pd.Series) -> str:

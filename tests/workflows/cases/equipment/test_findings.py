@@ -198,6 +198,19 @@ def test_a_rate_that_wear_was_changing_is_told_where_it_goes_on(found, factor, t
     assert ("That is if the last rate of R9 goes on, which wear was changing." in ratio) == told
 
 
+def test_designs_of_other_feeds_are_compared_per_mt_too(found):
+    """Fed twice as much a liner that wears twice as fast lasts half as long, and as many Mt; power needs none."""
+    twice = packings("fast", (1.96, 2.0, 2.04), rate=2.0 * RUN.rate)
+    runs = [*packings("slow", (0.98, 1.0, 1.02)), *twice]
+    lasts, loses = findings.answers_on_designs(found("designs", runs), found("life", runs))
+    assert lasts.startswith("The back liner of fast lasts 0.500 times as long") and "that is worse" in lasts
+    assert "It is fed 2.00 times as much; its life in Mt is 1.00 times that (" in lasts
+    assert "; per Mt it loses 1.00 times as much (" in loses
+    assert all(each.endswith("which is better cannot be said.") for each in (lasts, loses))
+    alike = [*packings("slow", (0.98, 1.0, 1.02)), *packings("fast", (1.96, 2.0, 2.04))]
+    assert "Mt" not in "".join(findings.answers_on_designs(found("designs", alike), found("life", alike)))
+
+
 def test_overlap_and_one_packing_say_nothing(found):
     """Scatter larger than the difference, or unknown, does not tell which is better."""
     runs = [*packings("A", (0.7, 1.0, 1.4)), *packings("B", (0.8, 1.1, 1.5))]
