@@ -203,7 +203,11 @@ def allowed_depths(thickness: np.ndarray, rule: Mapping[str, Any]) -> np.ndarray
 
 
 def _life(
-    patches: np.ndarray, allowed: np.ndarray, courses: Sequence[Course], error: float, none_allowed: str
+    patches: np.ndarray,
+    allowed: np.ndarray,
+    courses: Sequence[Course],
+    error: float,
+    none_allowed: str = NO_THICKNESS,
 ) -> PartLife:
     """Return the life of a part; none_allowed: the reason why there is none where no place may lose anything."""
     nothing = Estimate(math.nan, math.nan, 0, len(courses), log=True)
