@@ -33,11 +33,16 @@ def claims_of(part: str, path: str | Path | None = None) -> dict[str, Claim]:
 
 
 def about(quantity: str, low: float, high: float, unit: str, source: str = "", margin: float | None = None) -> Claim:
-    """Return a published value or range as a claim of its sign and size; without a margin of its own it is ABOUT."""
-    middle = 0.5 * (low + high)
-    size = {"magnitude": (low, high), "margin": ABOUT * abs(middle) if margin is None else margin}
+    """Return a published value or range as a claim of its sign and size; without a margin of its own it is ABOUT.
+
+    What agrees on both sides of 0, by its ends or by a margin of its own, claims no sign.
+    """
+    told = [end for end in (low, high) if math.isfinite(end)]  # of a range with one end that end alone
+    size = {"magnitude": (low, high), "margin": ABOUT * abs(sum(told) / len(told)) if margin is None else margin}
     words = f"about {low:g}" if low == high else f"{low:g} to {high:g}"
-    return Claim(quantity, words, source, quantity, unit, "above" if middle > 0.0 else "below", **size)
+    least, most = low - (margin or 0.0), high + (margin or 0.0)
+    direction = "above" if low > 0.0 and least >= 0.0 else "below" if high < 0.0 and most <= 0.0 else None
+    return Claim(quantity, words, source, quantity, unit, direction, **size)
 
 
 def date_of_rules(part: str = "", path: str | Path | None = None) -> str:

@@ -73,11 +73,16 @@ def _alike(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _judged_value(row: dict[str, Any]) -> dict[str, Any]:
-    """Return a published value beside the computed one; its margin is that of the row, else that of what is about."""
+    """Return a published value beside the computed one; its margin is that of the row, else that of what is about.
+
+    Where a range is published the range is claimed, also beside a value; the factor is over the value, without one over
+    the end that ours is beyond.
+    """
     value, low, high = (_number(row, f"published_{name}") for name in ("value", "low", "high"))
     computed, ends = row[COMPUTED], [_number(row, f"computed_{end}") for end in ("low", "high")]
     unit = "" if row["unit"] == "-" else row["unit"]
-    between = (low, high) if math.isnan(value) else (value, value)
+    ranged = not (math.isnan(low) and math.isnan(high))
+    between = _open_ended(low, high) if ranged else (value, value)
     margin = _number(row, "margin")
     claim = about(row["quantity"], *between, unit, margin=None if math.isnan(margin) else margin)
     if _text(row.get(GIVEN)):
@@ -88,7 +93,7 @@ def _judged_value(row: dict[str, Any]) -> dict[str, Any]:
         "finding": _words(row, "quantity", "setting"),
         "published": f"{_range(value, low, high)} {unit}".strip(),
         "found": verdict.found,
-        "factor": computed / value if value else math.nan,
+        "factor": verdict.factor if math.isnan(value) else computed / value if value else math.nan,
         "verdict": verdict.verdict,
         "reason": "; ".join(filter(None, (verdict.reason, _text(row.get("reason"))))),
         "source": row["source"],
@@ -104,9 +109,17 @@ def _verdict(claim: Claim, computed: float, ends: list[float], packings: float) 
     return judged(claim, Ends(computed, *ends, packings=0 if math.isnan(packings) else int(packings)))
 
 
+def _open_ended(low: float, high: float) -> tuple[float, float]:
+    """Return the ends of a published range, infinite where none is told."""
+    return (-math.inf if math.isnan(low) else low), (math.inf if math.isnan(high) else high)
+
+
 def _range(value: float, low: float, high: float) -> str:
     """Return a published value, its range where it has one, or both."""
-    between = "" if math.isnan(low) else f"{low:g} to {high:g}"
+    if math.isnan(low):
+        between = "" if math.isnan(high) else f"up to {high:g}"
+    else:
+        between = f"{low:g} or more" if math.isnan(high) else f"{low:g} to {high:g}"
     if math.isnan(value):
         return between
     return f"{value:g} ({between})" if between else f"{value:g}"

@@ -123,6 +123,60 @@ def test_a_published_range_is_a_magnitude():
     assert published_numbers([section(ranged)])["verdict"].tolist() == [UNSAID]
 
 
+RANGE = {**{name: value for name, value in VALUE.items() if name != "published_value"}, "unit": "weeks"}
+
+
+def told_of(**row):
+    """Return the line of one value whose interval is 2 % to both sides."""
+    ours = row["computed_value"]
+    ends = sorted((0.98 * ours, 1.02 * ours))
+    return published_numbers([section(RANGE | row | {"computed_low": ends[0], "computed_high": ends[1]})]).iloc[0]
+
+
+def test_what_is_beyond_a_published_range_has_a_factor():
+    """Over the end that it is beyond; inside there is none."""
+    ends = {"published_low": 4.0, "published_high": 8.0}
+    for computed, end in ((12.6, 8.0), (2.0, 4.0)):
+        row = told_of(**ends, computed_value=computed)
+        assert row["verdict"] == OTHER_SIZE and row["factor"] == pytest.approx(computed / end, rel=1e-12)
+    assert math.isnan(told_of(**ends, computed_value=6.0)["factor"])
+
+
+def test_a_range_beside_a_published_value_is_what_is_claimed():
+    """Ours at an end of it agrees, though it is more than 15 % off the value, over which the factor is told."""
+    row = told_of(published_value=6.0, published_low=4.0, published_high=8.0, computed_value=7.9)
+    assert (row["published"], row["verdict"]) == ("6 (4 to 8) weeks", AGREES)
+    assert row["factor"] == pytest.approx(7.9 / 6.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("ends", "words", "inside", "outside", "verdict"),
+    [
+        ({"published_low": 4.0}, "4 or more weeks", 40.0, 3.0, OTHER_SIZE),
+        ({"published_high": 8.0}, "up to 8 weeks", 1.0, 10.0, CONTRADICTS),
+    ],
+)
+def test_a_range_with_one_end_is_open_at_the_other(ends, words, inside, outside, verdict):
+    """What is told as up to something has no sign of its own."""
+    row = told_of(**ends, computed_value=inside)
+    assert (row["published"], row["verdict"]) == (words, AGREES)
+    assert told_of(**ends, computed_value=outside)["verdict"] == verdict
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        {"published_low": -5.0, "published_high": 5.0},
+        {"published_value": 0.0, "margin": 5.0},
+        {"published_value": 2.0, "margin": 7.0},
+    ],
+)
+def test_what_agrees_on_both_sides_of_nothing_claims_no_sign(told):
+    """A range or a margin of its own that holds 0: either sign inside agrees, outside contradicts."""
+    verdicts = [told_of(**told, computed_value=value)["verdict"] for value in (1.0, -1.0, -20.0, 20.0)]
+    assert verdicts == [AGREES, AGREES, CONTRADICTS, CONTRADICTS]
+
+
 def test_the_page_has_the_numbers_of_every_page_that_left_some(tmp_path):
     """Counts of the verdicts first; a page without published numbers leaves no file and has no section."""
     origins = [Origin("a_results_quick.md", "equipment"), Origin("b_results_quick.md", "equipment")]
