@@ -20,7 +20,7 @@ from bulkwear.postproc.reference.size_ratios import (
     size_ratios,
 )
 from bulkwear.postproc.statistics.crossing import FEWEST_PLACES, REJECTED, lack_of_fit
-from bulkwear.postproc.statistics.intervals import CONFIDENCE, estimate, students_t
+from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate, difference, estimate, students_t
 from bulkwear.workflows.report.published import GIVEN
 
 PUBLISHED_SCALES = np.arange(1.0, 9.0)  # of the source's lines (Yan 2022, Table 4.1 and Fig 4.14)
@@ -114,13 +114,14 @@ def published_at_scales(wear: pd.DataFrame, published: pd.DataFrame) -> pd.DataF
     The finest plain sample, over which all wear is told, is given.
 
     wear: as from `wear_by_scale`; published: as for `published_line`. Columns as `report.published` reads values.
+    Intervals hold the scatter of the finest plain sample too, see `_over_finest_plain`.
     """
     ours = wear[wear["particle_scale"].between(PUBLISHED_SCALES.min(), PUBLISHED_SCALES.max())]
     of_itself, rows = (PLAIN, wear["particle_scale"].min()), []  # 1 whatever was found
     for line in published.to_dict("records"):
         of_curve = ours[ours["curve"] == line["curve"]]
         for scale in np.unique(of_curve["particle_scale"].agg(["min", "max"]).dropna()):
-            found = estimate(of_curve.loc[of_curve["particle_scale"] == scale, "relative_wear"].to_numpy())
+            found = _over_finest_plain(wear, of_curve[of_curve["particle_scale"] == scale])
             low, high = found.interval()
             rows.append(
                 {
@@ -134,6 +135,20 @@ def published_at_scales(wear: pd.DataFrame, published: pd.DataFrame) -> pd.DataF
                 }
             )
     return pd.DataFrame(rows)
+
+
+def _over_finest_plain(wear: pd.DataFrame, own: pd.DataFrame) -> Estimate:
+    """Return the wear of a curve at one scale over that of the finest plain sample, both over packings.
+
+    At the scale of that sample a packing is one bed of both, and ratios are taken bed by bed; at others beds share
+    nothing. wear: as from `wear_by_scale`; own: rows of it
+    """
+    plain = wear[wear["curve"] == PLAIN]
+    finest = plain[plain["particle_scale"] == plain["particle_scale"].min()].set_index("row")["relative_wear"]
+    worn = own.set_index("row")["relative_wear"]
+    if set(worn.index) <= set(finest.index):
+        return estimate((worn / finest.reindex(worn.index)).to_numpy(), log=True)
+    return difference(estimate(worn.to_numpy(), log=True), estimate(finest.to_numpy(), log=True))
 
 
 def own_line(scale: np.ndarray, wear: np.ndarray) -> Line | None:

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bulkwear.postproc.statistics.intervals import students_t
 from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import (
     PUBLISHED_SCALES,
     Particles,
@@ -48,22 +49,45 @@ def test_larger_gravel_is_not_helped():
     assert not most["helps"] and most["larger_share"] == 0.75 and most["largest_scale"] < 1.0
 
 
+def wear_of_scales(**curves):
+    """Wear by curve and scale, a bed per value: rows S4-0, S4-1, ..."""
+    rows = [
+        (f"S{scale}-{bed}", curve, scale, wear)
+        for curve, of in curves.items()
+        for scale, wears in of.items()
+        for bed, wear in enumerate(wears)
+    ]
+    return pd.DataFrame(rows, columns=["row", "curve", "particle_scale", "relative_wear"])
+
+
 def test_the_published_lines_stand_beside_our_means():
     """At the least and the largest scale that the source has too; Eq 4.15 at 4 is 0.96, at 8 2.0."""
-    wear = pd.DataFrame(
-        [("convex", scale, wear) for scale, wears in {4: (0.4, 0.6), 6: (0.8,), 8: (1.0, 1.2), 12: (1.3,)}.items()
-         for wear in wears],
-        columns=["curve", "particle_scale", "relative_wear"],
-    )  # fmt: skip
+    plain = {4: (0.8, 1.25), 8: (0.9, 1.0)}
+    wear = wear_of_scales(convex={4: (0.4, 0.6), 6: (0.8,), 8: (1.0, 1.2), 12: (1.3,)}, plain=plain)
     table = published_at_scales(wear, LINES).set_index("setting")
-    assert table.index.tolist() == ["convex at scale 4", "convex at scale 8"]
-    np.testing.assert_allclose(table["published_value"], [0.96, 2.0], rtol=ROUNDING)
-    np.testing.assert_allclose(table["computed_value"], [0.5, 1.1], rtol=ROUNDING)
-    assert (table["packings"] == 2).all() and (table["computed_low"] < table["computed_value"]).all()
-    assert not table["given"].any()
-    own = pd.DataFrame({"curve": "plain", "particle_scale": [4, 4, 8, 8], "relative_wear": [0.9, 1.1, 0.8, 1.0]})
-    given = published_at_scales(own, LINES).set_index("setting")["given"]
-    assert given.to_dict() == {"plain at scale 4": "yes", "plain at scale 8": ""}  # over itself, 1 whatever is found
+    named = ["convex at scale 4", "convex at scale 8", "plain at scale 4", "plain at scale 8"]
+    assert sorted(table.index) == named
+    np.testing.assert_allclose(table.loc[named[:2], "published_value"], [0.96, 2.0], rtol=ROUNDING)
+    geometric = [(0.4 * 0.6) ** 0.5, (1.0 * 1.2) ** 0.5]
+    np.testing.assert_allclose(table.loc[named[:2], "computed_value"], geometric, rtol=ROUNDING)
+    assert (table["packings"] == 2).all()
+    given = {"plain at scale 4": "yes"}  # over itself, 1 whatever is found
+    assert table["given"].to_dict() == dict.fromkeys(named, "") | given
+    alone = wear_of_scales(convex={4: (0.4,), 8: (1.0, 1.2)}, plain={4: (1.0,), 8: (0.9,)})
+    assert published_at_scales(alone, LINES)["computed_low"].isna().all()  # the plain one that all is over has one bed
+
+
+def test_beside_the_published_lines_both_samples_scatter():
+    """Of one bed both wear in proportion, so that it leaves no scatter; at another scale that of both counts."""
+    bed = np.array([0.8, 1.0, 1.25])
+    wear = wear_of_scales(convex={4: 0.5 * bed, 8: 2.0 * bed}, plain={4: bed, 8: bed})
+    table = published_at_scales(wear, LINES).set_index("setting")
+    width = np.log(table["computed_high"] / table["computed_low"])
+    assert width["convex at scale 4"] == pytest.approx(0.0, abs=ROUNDING)
+    scatter = np.log(bed).std(ddof=1) * np.sqrt(2.0 / len(bed))
+    freedom = 2.0 * (len(bed) - 1.0)  # by Welch, of two that scatter alike
+    expected = 2.0 * students_t(0.975, freedom) * scatter
+    np.testing.assert_allclose(width[["convex at scale 8", "plain at scale 8"]], expected, rtol=1e-9)
 
 
 def test_the_published_line_tells_what_scale_does_to_wear():
