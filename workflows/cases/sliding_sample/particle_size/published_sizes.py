@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ import pandas as pd
 from bulkwear.postproc.flow.packing import MEASURES, inner_means
 from bulkwear.postproc.statistics.crossing import Crossing
 from bulkwear.postproc.statistics.intervals import Ends, Estimate, estimates
-from bulkwear.postproc.statistics.verdicts import Claim, judged
+from bulkwear.postproc.statistics.verdicts import AGREES, OTHER_SIZE, Claim, Verdict, judged
 from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import CONVEX, critical_scale_text
 from bulkwear.workflows.config.claims import about
 
@@ -58,8 +59,8 @@ def beside_the_source(
     ratio: -, alpha_ER of real particles; NaN of samples without bumps, whose critical scale is not that of the source
 
     A number is claimed of every scale from scale_from to scale_to: of each that was simulated there is an estimate over
-    packings, see `claim_of`. Where none was, nothing can be said. Windows of travel are no measurement of ours and left
-    out.
+    packings, see `claim_of`. One of them may contradict it; it agrees only where the scales simulated reach from end to
+    end. Windows of travel are no measurement of ours and left out.
     """
     ours = _measures(steady, profiles)
     rows = []
@@ -107,9 +108,18 @@ def _by_scale(table: pd.DataFrame, each: Any, column: str) -> dict[float, Estima
 
 def _row(each: Any, surface: str, found: Mapping[Any, Estimate | Ends]) -> tuple:
     """Return a published number with what was found and the verdict, in the order of COLUMNS."""
-    verdict = judged(claim_of(each), found, _words(found))
+    verdict = _judged(claim_of(each), found, (each.scale_from, each.scale_to))
     told = (each.quantity, surface, _scales(each), each.relation, each.value, each.unit)
     return (*told, verdict.found, verdict.verdict, verdict.reason, verdict.factor, each.source)
+
+
+def _judged(claim: Claim, found: Mapping[Any, Estimate | Ends], scales: tuple[float, float]) -> Verdict:
+    """Return the verdict on what is claimed of all scales between two; found: by scale, "" of what is of no scale."""
+    verdict = judged(claim, found, _words(found))
+    if verdict.verdict not in (AGREES, OTHER_SIZE) or "" in found:
+        return verdict
+    reach = replace(claim, reach=scales, reach_unit="times the particles")
+    return judged(reach, found, _words(found), covers=(min(found), max(found)))
 
 
 def claim_of(each: Any) -> Claim:
