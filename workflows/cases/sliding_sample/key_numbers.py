@@ -67,7 +67,8 @@ def wear_over_plain(summary: pd.DataFrame) -> dict[tuple[str, str], Estimate]:
 def answers(summary: pd.DataFrame) -> list[str]:
     """Return what a study's patterns do to the wear: the lowest in numbers, and how many wear less and more.
 
-    More or less is said only where the interval excludes 1.
+    More or less is said only where the interval excludes 1; of how many others the interval reaches down to that of the
+    lowest is told, as of all without one.
     """
     found = wear_over_plain(summary)
     if not found:
@@ -82,7 +83,9 @@ def answers(summary: pd.DataFrame) -> list[str]:
     counts = (
         f"{less} of {len(found)} patterns wear less than their plain twin, {more} more; of {open_} it cannot be said."
     )
-    return [counts, f"Lowest: {said[0].lower()}{said[1:]}"]
+    alike = sum(not each.interval()[0] > best.interval()[1] for each in found.values()) - 1  # also without an interval
+    others = f" Of {alike} of {len(found) - 1} others it cannot be said that they wear more." if alike else ""
+    return [counts, f"Lowest: {said[0].lower()}{said[1:]}{others}"]
 
 
 def facts(summary: pd.DataFrame, depths: pd.DataFrame, acceleration: float, error: float = 0.0) -> list[str]:

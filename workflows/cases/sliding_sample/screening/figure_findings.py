@@ -17,7 +17,8 @@ SPIN = "averaged_angular_velocity_deg_per_s"
 
 
 def pattern_over_plain(table: pd.DataFrame) -> str:
-    """Return how many patterns wear less and more than plain, and the lowest of them with its interval.
+    """Return how many patterns wear less and more than plain, of how many neither can be said, and the lowest of them
+    with its interval.
 
     table: setting, surface, wear_over_plain with packings and interval; plain samples are 1 by definition
     """
@@ -28,6 +29,7 @@ def pattern_over_plain(table: pd.DataFrame) -> str:
     ratio = with_interval(best["wear_over_plain"], best["interval_low"], best["interval_high"], best["packings"])
     sides = [side(low, high) for low, high in zip(found["interval_low"], found["interval_high"], strict=True)]
     counts = f"{sides.count(-1)} of {len(found)} patterns wear less than plain, {sides.count(1)} more"
+    counts += f", of {sides.count(0)} it cannot be said" if 0 in sides else ""
     return f"{counts}; lowest is {best['setting']} with {ratio} of the plain sample's wear."
 
 
