@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from bulkwear.workflows.cases.equipment.findings import answers_on_lifters, interval_words, rounded, spoken
+from bulkwear.workflows.cases.equipment.findings import answers_on_lifters
+from bulkwear.workflows.cases.equipment.life_findings import interval_words, rounded
 from bulkwear.workflows.cases.equipment.phases import PRISTINE
-from bulkwear.workflows.report.sentences import PERCENT, capital, listed
+from bulkwear.workflows.report.sentences import PERCENT, capital, listed, spoken
 
 PLACE_DIGITS = 1  # after the point, of a place in mm: beyond is rounding
 RATE, AREA = "pristine_mm_per_1000h", "area_mm2"

@@ -1,4 +1,4 @@
-"""What a study of equipment found, in sentences: when parts are changed, which design is better, what wear changes."""
+"""What a study of equipment found, in sentences: which design is better, what wear changes, what was worn through."""
 
 from __future__ import annotations
 
@@ -8,204 +8,36 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.statistics.intervals import CONFIDENCE, UNKNOWN
+from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.statistics.steady import DRIFTING, STEADY
 from bulkwear.postproc.statistics.steady import UNSAID as NOT_SAID
 from bulkwear.postproc.tables.summary import THROUGH
 from bulkwear.workflows.cases.equipment.comparison import FIRST, LIFE, UNSAID
-from bulkwear.workflows.cases.equipment.life import AS_BUILT, EXTRAPOLATED, FOLLOWED, NO_WEAR, PARTLY, WHOLE_PART
+from bulkwear.workflows.cases.equipment.life_findings import (
+    FROM_ONE,
+    PER_CENT,
+    answers_on_first_change,
+    answers_on_life,
+    changed_rate_words,
+    rounded,
+    span,
+)
 from bulkwear.workflows.cases.equipment.phases import PRISTINE
 from bulkwear.workflows.report.sentences import listed, spoken
 
 Tables = Mapping[str, pd.DataFrame]
-TOO_WIDE = 100.0  # -, of the ends of an interval that tells nothing
-DIGITS = 2  # significant ones of an answer, whose interval is wide
 SMALLEST_CHANGE = 0.1  # %, below which a change is called none
-LEAST_RATE_CHANGE = 1.1  # -, factor of a rate by wear of the shape, from which on its further change is asked for
 STEADINESS = {STEADY: "steady", DRIFTING: "not steady", NOT_SAID: "not known to be steady"}
 SAME_FEED = 1e-6  # -, relative: numbers of tables have nine digits
-FROM_ONE = 1.0  # number of packings of which the scatter is unknown
-PER_CENT = f"{100.0 * CONFIDENCE:.0f} %"
 CANNOT_BE_SAID = "which is better cannot be said"
 RATIOS = {  # quantity of the table of designs: what a part does in its ratio
     LIFE: "lasts {ratio} times as long",
     "steel_lost": "loses {ratio} times as much steel per hour",
 }
-RUNNING = "the wear is not spread along the way that it goes round, so that its life is too short"
 CHANGES = {  # quantity of the table of loads: verb and noun
     "power_W": ("takes", "power"),
     "worn_mass_kg_per_h": ("loses", "steel per hour"),
 }
-
-
-def rounded(value: float, digits: int = DIGITS) -> str:
-    """Return a number with few digits, thousands apart by commas: 5,200."""
-    if not math.isfinite(value):
-        return "an unknown number of"
-    if value == 0.0:
-        return "0"
-    decimals = digits - 1 - math.floor(math.log10(abs(value)))
-    return f"{round(value, decimals):,.{max(decimals, 0)}f}"
-
-
-def span(low: float, high: float, unit: str = "", digits: int = DIGITS) -> str:
-    """Return the ends of an interval, 4,100 to 6,700 h."""
-    return f"{rounded(low, digits)} to {rounded(high, digits)}{f' {unit}' if unit else ''}"
-
-
-# ---------------------------------------------------------------- life
-
-
-def answers_on_life(life: pd.DataFrame) -> list[str]:
-    """Return when each part of each setting is changed, where it decides and how that is known; then what that means
-    of parts whose surface runs.
-    """
-    several = life["setting"].nunique() > 1
-    running = dict.fromkeys(life.loc[life["surface_runs"], "part"])
-    return [
-        *(life_sentence(row, several) for _, row in life.iterrows()),
-        *(f"The surface of the {spoken(part)} runs, and is worn where it stands: {RUNNING}." for part in running),
-    ]
-
-
-def answers_on_first_change(life: pd.DataFrame) -> list[str]:
-    """Return of each setting which part is changed first, and when; nothing where each has one part alone. Parts that
-    wear and whose life cannot be said may be changed earlier.
-    """
-    known = life[np.isfinite(life["life_h"])]
-    if not known.duplicated("setting").any():
-        return []
-    rows = known.loc[known.groupby("setting", sort=False)["life_h"].idxmin()]
-    several = life["setting"].nunique() > 1
-    return [
-        f"{f'Design {row.setting}: the' if several else 'The'} {spoken(row.part)} is changed first, after "
-        f"{rounded(row.life_h)} h ({interval_words(row)}){unless_words(life[life['setting'] == row.setting])}."
-        for _, row in rows.iterrows()
-    ]
-
-
-def unless_words(life: pd.DataFrame) -> str:
-    """Return that parts whose life cannot be said may be changed earlier; nothing where there are none that wear."""
-    open_ = life[~np.isfinite(life["life_h"]) & (life["reason"] != NO_WEAR)]
-    if open_.empty:
-        return ""
-    names = listed([f"the {spoken(part)}" for part in open_["part"]])
-    several = len(open_) > 1
-    return f", unless {names} {'are' if several else 'is'}: how long {'they last' if several else 'it lasts'} is open"
-
-
-def life_sentence(row: pd.Series, several: bool) -> str:
-    """Return the sentences on the life of a part; several: whether the study has other designs."""
-    who = f"{f'Design {row.setting}: the' if several else 'The'} {spoken(row.part)}"
-    if isinstance(row.reason, str) and row.reason:
-        return f"{who}: how long it lasts cannot be said, because {row.reason}."
-    further = [f"{rounded(row[f'life_{unit}'])} {unit}" for unit in ("Mt", "years") if np.isfinite(row[f"life_{unit}"])]
-    after = ", ".join([f"{rounded(row.life_h)} h ({interval_words(row)})", *further])
-    said = [f"{who} has to be changed after {after}; {place_words(row)}.", how_words(row), asked_words(row)]
-    said += [earlier_words(row), faster_words(row)]
-    return " ".join(filter(None, said))
-
-
-def interval_words(row: pd.Series) -> str:
-    """Return the interval of a life, or what is known of it from one packing."""
-    ends = row.life_low_h, row.life_high_h
-    if row.packings > FROM_ONE and np.isfinite(ends[0]):
-        if ends[1] > TOO_WIDE * ends[0]:
-            return f"{row.packings} packings do not tell it within a factor of {TOO_WIDE:g}"
-        return f"{span(*ends, 'h')}, {PER_CENT}"
-    unknown = UNKNOWN if row.packings <= FROM_ONE else "scatter unknown"
-    if np.isfinite(ends[0]):
-        return f"{unknown}; its own blocks and the coefficient give {span(*ends, 'h')}"
-    if row.coefficient_error > 0.0:
-        return f"{unknown}; the coefficient alone gives {span(row.coefficient_low_h, row.coefficient_high_h, 'h')}"
-    return unknown
-
-
-def place_words(row: pd.Series) -> str:
-    """Return where the worst place is and how fast it wears; by its mass the whole part decides."""
-    if row.patch == WHOLE_PART:
-        return "its whole mass decides"
-    place = coordinates(row)
-    worn = f", {rounded(row.worn_mm_per_1000h)} mm as worn" if row.how != AS_BUILT else ""
-    rate = f"{rounded(row.pristine_mm_per_1000h)} mm per 1,000 h as built{worn}"
-    return f"its worst place is at ({place}) mm of its drawing and loses {rate}"
-
-
-def coordinates(row: pd.Series, which: str = "") -> str:
-    """Return the coordinates of a place in mm, of the columns <which>x_mm and so on."""
-    return ", ".join(f"{round(row[f'{which}{axis}_mm']):,}" for axis in "xyz")
-
-
-def earlier_words(row: pd.Series) -> str:
-    """Return what one packing alone would have changed much earlier; nothing where there is no such place."""
-    if not np.isfinite(row.earlier_h):
-        return ""
-    return (
-        f"In packing {row.earlier_packing:g} alone the place at ({coordinates(row, 'earlier_')}) mm would be changed "
-        f"after {rounded(row.earlier_h)} h: how often that happens, so few blocks cannot tell."
-    )
-
-
-def faster_words(row: pd.Series) -> str:
-    """Return which place without a life wears faster than the one that decides, and why it has none; nothing where
-    there is none.
-    """
-    if not np.isfinite(row.faster_mm_per_1000h):
-        return ""
-    rate = f"{rounded(row.faster_mm_per_1000h)} mm per 1,000 h"
-    where = coordinates(row, "faster_")
-    why = "its thickness is not known"
-    if np.isfinite(row.faster_thickness_mm):
-        why = f"the {rounded(row.faster_thickness_mm)} mm that it has as built are no more than what shall remain"
-    return f"The place at ({where}) mm loses more, {rate}, and is left out, because {why}."
-
-
-def how_words(row: pd.Series) -> str:
-    """Return as far as which hour the shape was worn, and what goes on from there."""
-    hours = rounded(row.simulated_h)
-    rate = f"the last rate goes on{changed_rate_words(row)}"
-    return {
-        FOLLOWED: "The shape was worn until then.",
-        PARTLY: f"The shape was worn for {hours} h, until then in some packings; in the others {rate}.",
-        EXTRAPOLATED: f"The shape was worn for {hours} h; from there on {rate}.",
-        AS_BUILT: "That is by the rate as built: the shape was not worn.",
-    }[row.how]
-
-
-def changed_rate_words(row: pd.Series) -> str:
-    """Return how far wear has changed a rate that goes on; nothing where it was followed or hardly changed."""
-    factor = row.worn_over_built
-    if row.how not in (PARTLY, EXTRAPOLATED) or not np.isfinite(factor):
-        return ""
-    if not max(factor, 1.0 / factor if factor > 0.0 else math.inf) > LEAST_RATE_CHANGE:
-        return ""
-    return f", {rounded(factor)} times that as built: a further change is in no interval"
-
-
-def asked_words(row: pd.Series) -> str:
-    """Return whether a part lasts as long as the study asks for; nothing where it asks for no hours."""
-    if not row.asked_h > 0.0:
-        return ""
-    asked = f"the {rounded(row.asked_h)} h that are asked for"
-    known = np.isfinite(row.life_low_h)  # of one packing by its blocks, or by the coefficient alone
-    ends = (row.life_low_h, row.life_high_h) if known else (row.coefficient_low_h, row.coefficient_high_h)
-    if ends[0] <= row.asked_h <= ends[1]:
-        return f"Whether it lasts {asked} cannot be said."
-    return f"It {'lasts' if row.life_h >= row.asked_h else 'does not last'} {asked}."
-
-
-def cards(life: pd.DataFrame) -> list[tuple[str, str]]:
-    """Return the life of each part as a number and what it is."""
-    found, several = [], life["setting"].nunique() > 1
-    for _, row in life[np.isfinite(life["life_h"])].iterrows():
-        of = f", design {row.setting}" if several else ""
-        found.append(
-            (f"{rounded(row.life_h)} h", f"until the {spoken(row.part)} is changed{of}: {interval_words(row)}")
-        )
-    return found
-
-
-# ---------------------------------------------------------------- designs, worn shape
 
 
 def answers_on_designs(designs: pd.DataFrame, life: pd.DataFrame) -> list[str]:
@@ -369,7 +201,7 @@ def all_answers(tables: Tables, summary: pd.DataFrame) -> list[str]:
     ratios = answers_on_designs(tables["designs"], tables["life"])
     open_ = [said for said in ratios if CANNOT_BE_SAID in said]
     return [
-        *answers_on_first_change(tables["life"]),
+        *answers_on_first_change(tables["life"], tables["steel"]),
         *(said for said in ratios if said not in open_),
         *answers_on_holes(summary),
         *answers_on_life(tables["life"]),

@@ -10,7 +10,7 @@ from typing import Any
 import pandas as pd
 
 from bulkwear.postproc.tables.summary import read_named
-from bulkwear.workflows.cases.equipment import findings, heads
+from bulkwear.workflows.cases.equipment import heads, life_findings
 from bulkwear.workflows.cases.equipment.figures import BESIDE_PUBLISHED, LIFTERS, TABLES
 from bulkwear.workflows.cases.equipment.findings import Tables
 from bulkwear.workflows.cases.equipment.heads import shown
@@ -69,7 +69,7 @@ def read_tables(folder: Path) -> dict[str, pd.DataFrame]:
 
 def life(found: Tables) -> list[Block]:
     """Return the lives as numbers, and their table."""
-    numbers = findings.cards(found["life"])
+    numbers = life_findings.cards(found["life"])
     return [
         *([Cards(numbers)] if numbers else []),
         shown(found["life"], heads.LIFE_COLUMNS, "life", LIFE_NOTE),
@@ -172,14 +172,14 @@ def _carried_words(worn: pd.DataFrame) -> str:
     if not share >= LEAST_CARRIED:
         return ""
     return (
-        f" At the end caps on a step held back up to {findings.rounded(100.0 * share)} % of the volume that the wear"
-        " law took: the worn shape lags behind its hours, most where elements are small. More updates (updates.most),"
-        " or larger elements, bring it closer."
+        f" At the end caps on a step held back up to {life_findings.rounded(100.0 * share)} % of the volume that the"
+        " wear law took: the worn shape lags behind its hours, most where elements are small. More updates"
+        " (updates.most), or larger elements, bring it closer."
     )
 
 
 def _hours(values: pd.Series) -> str:
-    low, high = (findings.rounded(value, 3) for value in (values.min(), values.max()))
+    low, high = (life_findings.rounded(value, 3) for value in (values.min(), values.max()))
     return low if low == high else f"{low} to {high}"
 
 

@@ -14,6 +14,7 @@ from bulkwear.workflows.cases.equipment import (
     findings,
     flow_tables,
     life,
+    life_findings,
     life_tables,
     published,
     tables,
@@ -38,6 +39,7 @@ def packings(setting, factors, **given):
 BY_IMPACTS = {"plate": {"law": "impact_threshold", "wear_coefficient_per_pa": 1e-11}}
 TABLES = {
     "life": life_tables.life_table,
+    "steel": life_tables.steel_table,
     "designs": comparison.designs_table,
     "loads": lambda read, lives: tables.loads_table(read),
     "flow": lambda read, lives: flow_tables.flow_table(read),
@@ -70,7 +72,7 @@ def found(tmp_path):
 )
 def test_numbers_of_answers(value, said):
     """Two digits, thousands apart."""
-    assert findings.rounded(value) == said
+    assert life_findings.rounded(value) == said
 
 
 # ---------------------------------------------------------------- life
@@ -78,7 +80,7 @@ def test_numbers_of_answers(value, said):
 
 def test_answer_on_life(found):
     """Hours with the interval, Mt, years, the place and its rates, and how far the shape was worn."""
-    (said,) = findings.answers_on_life(found("life", packings("plain", (0.98, 1.0, 1.02))))
+    (said,) = life_findings.answers_on_life(found("life", packings("plain", (0.98, 1.0, 1.02))))
     assert said.startswith("The back liner has to be changed after 6,000 h (")
     assert " h, 95 %), 1.1 Mt, 1.0 years; its worst place is at (150, 50, 0) mm of its drawing and loses 5.0 mm" in said
     assert "The shape was worn for 300 h; from there on the last rate goes on." in said
@@ -90,10 +92,10 @@ def test_what_happens_in_one_packing_alone_is_said(found):
     """With its place and its hours, at the end; of alike packings nothing is said."""
     jam = replace(LINER, recession=(2e-5, 5e-6))
     first, *others = packings("plain", (0.98, 1.0, 1.02))
-    (said,) = findings.answers_on_life(found("life", [replace(first, parts=(jam,)), *others]))
+    (said,) = life_findings.answers_on_life(found("life", [replace(first, parts=(jam,)), *others]))
     place = "In packing 1 alone the place at (50, 50, 0) mm would be changed after 1,500 h"
     assert place in said and said.startswith("The back liner has to be changed after 6,000 h (")
-    (said,) = findings.answers_on_life(found("life", [first, *others]))
+    (said,) = life_findings.answers_on_life(found("life", [first, *others]))
     assert "alone" not in said
 
 
@@ -107,19 +109,19 @@ def test_what_happens_in_one_packing_alone_is_said(found):
 )
 def test_the_first_change_leaves_parts_of_unknown_life_open(found, part, said):
     """A part of unknown thickness may go first; one that nothing wears does not."""
-    parts = (LINER, replace(WHEEL, thickness=0.1), part)
-    (first,) = findings.answers_on_first_change(found("life", packings("plain", (0.98, 1.0, 1.02), parts=parts)))
+    runs = packings("plain", (0.98, 1.0, 1.02), parts=(LINER, replace(WHEEL, thickness=0.1), part))
+    (first,) = life_findings.answers_on_first_change(found("life", runs), found("steel", runs))
     assert first.startswith("The back liner is changed first, after 6,000 h (") and first.endswith(said)
 
 
 def test_one_packing_is_unknown(found):
     """Its scatter is, whatever its own blocks and the coefficient give."""
     few = replace(RUN, pristine=1, updates=1, worn=1)
-    (said,) = findings.answers_on_life(found("life", [few]))
+    (said,) = life_findings.answers_on_life(found("life", [few]))
     assert f"after 6,000 h ({UNKNOWN}; the coefficient alone gives 5,000 to 7,500 h)" in said
-    (said,) = findings.answers_on_life(found("life", [replace(RUN, scatter=0.05)]))
+    (said,) = life_findings.answers_on_life(found("life", [replace(RUN, scatter=0.05)]))
     assert f"({UNKNOWN}; its own blocks and the coefficient give " in said
-    (said,) = findings.answers_on_life(found("life", [replace(few, parts=(replace(LINER, error=0.0),))]))
+    (said,) = life_findings.answers_on_life(found("life", [replace(few, parts=(replace(LINER, error=0.0),))]))
     assert f"after 6,000 h ({UNKNOWN})" in said
 
 
@@ -130,21 +132,23 @@ def test_one_packing_is_unknown(found):
 def test_unknown_life_says_why(found, part, reason):
     """There is a sentence and no number."""
     table = found("life", [replace(RUN, parts=(part,))])
-    assert findings.answers_on_life(table) == [f"The back liner: how long it lasts cannot be said, because {reason}."]
-    assert findings.cards(table) == []
+    assert life_findings.answers_on_life(table) == [
+        f"The back liner: how long it lasts cannot be said, because {reason}."
+    ]
+    assert life_findings.cards(table) == []
 
 
 def test_interval_round_what_is_asked_for_says_nothing(found):
     """Where the interval of the life holds the hours that are asked for, neither is said."""
-    (said,) = findings.answers_on_life(found("life", packings("plain", (0.6, 0.75, 0.9))))
+    (said,) = life_findings.answers_on_life(found("life", packings("plain", (0.6, 0.75, 0.9))))
     assert said.endswith("Whether it lasts the 8,000 h that are asked for cannot be said.")
 
 
 def test_one_packing_says_nothing_where_its_blocks_or_the_coefficient_leave_it_open(found):
     """What is known of one packing is held against the hours that are asked for as an interval of several is."""
     few = replace(RUN, pristine=1, updates=1, worn=1)
-    for error, said in ((0.5, "cannot be said."), (0.0, "It does not last")):
-        (answer,) = findings.answers_on_life(found("life", [replace(few, parts=(replace(LINER, error=error),))]))
+    for error, said in ((0.5, "cannot be said."), (0.0, "By this one packing it does not last")):
+        (answer,) = life_findings.answers_on_life(found("life", [replace(few, parts=(replace(LINER, error=error),))]))
         assert said in answer.split("goes on.")[1]
 
 
@@ -161,8 +165,8 @@ def test_a_running_surface_that_wears_is_worn_where_it_stands(found, motion, sai
     """It is said once for all designs, however the life comes out; not of parts that move, and of those at rest."""
     short = {"parts": (replace(LINER, motion=motion),), "pristine": 1, "updates": 1, "worn": 1}
     runs = [*packings("plain", (1.0,), **short), *packings("R9", (1.0,), **short)]
-    answers = findings.answers_on_life(found("life", runs))
-    sentence = f"The surface of the back liner runs, and is worn where it stands: {findings.RUNNING}."
+    answers = life_findings.answers_on_life(found("life", runs))
+    sentence = f"The surface of the back liner runs, and is worn where it stands: {life_findings.RUNNING}."
     assert answers[2:] == ([sentence] if said else [])
 
 
@@ -189,7 +193,7 @@ def test_a_rate_that_wear_was_changing_is_told_where_it_goes_on(found, factor, t
     changing = {"parts": (replace(LINER, worn=factor),)}
     runs = [*packings("plain", (0.98, 1.0, 1.02)), *packings("R9", (0.49, 0.5, 0.51), **changing)]
     lives = found("life", runs)
-    first, second = findings.answers_on_life(lives)
+    first, second = life_findings.answers_on_life(lives)
     ratio = findings.answers_on_designs(found("designs", runs), lives)[0]
     changed = lives.set_index("setting").loc["R9"]
     by = changed["worn_mm_per_1000h"] / changed["pristine_mm_per_1000h"]

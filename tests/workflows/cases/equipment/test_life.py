@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.mesh import SurfaceMesh, write_surface
-from bulkwear.workflows.cases.equipment import findings, life, life_tables, tables
+from bulkwear.workflows.cases.equipment import life, life_findings, life_tables, tables
 from bulkwear.workflows.cases.equipment.life import AS_BUILT, BY_MASS, EXTRAPOLATED, FOLLOWED, WHOLE_PART
 from tests.support.shapes import box
 from tests.workflows.cases.equipment.synthetic import (
@@ -102,7 +102,7 @@ def test_rule_of_mass_tells_a_rate_that_wear_was_changing(lives):
     """As a rule of thickness does; the rate is that of the whole part."""
     run = with_rule(replace(ONE, parts=(replace(UNIFORM, worn=1.5),), worn=4), change_out_worn_mass_fraction=0.5)
     row = lives(run, volumes={("plain", "liner"): 4 * SIDE**2 * THICKNESS})[2].iloc[0]
-    assert "the last rate goes on, 1.5 times that as built" in findings.life_sentence(row, False)
+    assert "the last rate goes on, 1.5 times that as built" in life_findings.life_sentence(row, False)
 
 
 def test_volume_of_a_part_is_that_of_its_body(tmp_path):
@@ -183,7 +183,7 @@ def test_a_faster_place_of_unknown_thickness_is_told(lives):
         changed = replace(runs, patches=runs.patches.assign(thickness_m=thickness))
         row = life_tables.life_table(changed, life.part_lives(changed, {})).iloc[0]
         assert row["faster_mm_per_1000h"] == pytest.approx(rate, nan_ok=True)
-        said = findings.life_sentence(row, False)
+        said = life_findings.life_sentence(row, False)
         assert ("mm loses more, 10 mm per 1,000 h, and is left out" in said) == np.isfinite(rate)
 
 
@@ -196,7 +196,7 @@ def test_a_place_that_is_thinner_as_built_than_what_shall_remain_is_told(lives):
         thickness = runs.patches["thickness_m"].where(~runs.patches["patch"].isin(thin), 0.008)
         changed = replace(runs, patches=runs.patches.assign(thickness_m=thickness))
         row = life_tables.life_table(changed, life.part_lives(changed, {})).iloc[0]
-        said = findings.life_sentence(row, False)
+        said = life_findings.life_sentence(row, False)
         assert words in said and "its thickness is not known" not in said
 
 

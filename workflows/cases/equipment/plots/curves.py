@@ -23,7 +23,7 @@ from bulkwear.postproc.plots.style import (
     new_figure,
 )
 from bulkwear.postproc.tables.display import few_digits
-from bulkwear.workflows.cases.equipment.findings import TOO_WIDE
+from bulkwear.workflows.cases.equipment.life_findings import TOO_WIDE
 from bulkwear.workflows.report.text import range_text
 
 PHASES = {  # phase: what it is called, and its shade
