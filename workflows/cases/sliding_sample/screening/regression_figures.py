@@ -36,11 +36,11 @@ FIDELITY = {"fidelity": lambda study: study.fidelity}
     when=lambda study: bool(study.confirms),
     caption="""
     The design of least wear inside the ranges of the factors for each flow regime that was found, by the best model of
-    the screening's regression: predicted wear per length of travel, with the interval in which one further run falls
-    at 95 %, and what its runs wear, with their plain twins. Velocity and thickness stand at the pair, of those at
-    which a run of the screening had the regime, where the least is predicted. The interval takes the terms of the
-    model as given; they were chosen with the same runs, so it is too narrow. A run inside it does not prove the model,
-    one outside it refutes it at these levels.
+    the screening's regression: predicted wear per length of travel, with the interval in which one further setting
+    falls at 95 %, the mean over as many packings, and what its runs wear, with their plain twins. Velocity and
+    thickness stand at the pair, of those at which a run of the screening had the regime, where the least is predicted.
+    The interval takes the terms of the model as given; they were chosen with the same runs, so it is too narrow. A run
+    inside it does not prove the model, one outside it refutes it at these levels.
     """,
 )
 def confirmation(job: Job) -> Any:

@@ -155,4 +155,4 @@ def _two_steps(study: Screening) -> Iterator[str]:
 
 def _no_replicates(study: Screening) -> Iterator[str]:
     if len(np.unique(study.coded, axis=0)) == len(study.coded):
-        yield "no row is repeated with another packing: the error of the model is scatter and misfit together"
+        yield "no row is repeated: the error of the model is the scatter of packings and misfit together"

@@ -15,6 +15,7 @@ from tests import REPOSITORY as ROOT
 from tests.support.screening_study import FACTORS
 
 WEAR = 1e-9  # m3/m
+COLUMN = "worn_volume_per_metre_m3_per_m"
 
 
 def read(name):
@@ -41,6 +42,24 @@ def test_runs_with_a_pattern_are_regressed(summary):
     assert slopes[4,] == pytest.approx(np.log(2.0), abs=0.1)
     assert slopes[5,] == pytest.approx(2.0 * np.log(2.0), abs=0.1)
     assert strongest_factor(study).name == "t"
+
+
+def test_packings_are_no_further_runs(summary):
+    """What the model misses a row by is the same in all its packings: the terms are those of the means, under the names
+    of the settings; a packing that failed leaves the others.
+    """
+    convex = summary[summary["surface"] == "convex"]
+    shares = {"": 0.99, "-2": 1.0, "-3": 1.0 / 0.99}
+    packings = [
+        convex.assign(row=convex["row"] + name, setting=convex["row"], **{COLUMN: share * convex[COLUMN]})
+        for name, share in shares.items()
+    ]
+    alone, three = screen_summary(convex, FACTORS), screen_summary(pd.concat(packings), FACTORS)
+    assert three.model.terms == alone.model.terms and three.model.freedom == alone.model.freedom
+    np.testing.assert_allclose(three.response, alone.response, atol=1e-12)
+    assert three.design_rows.tolist() == convex["row"].tolist()
+    failed = pd.concat([packings[1], packings[0].assign(**{COLUMN: np.nan})])
+    np.testing.assert_allclose(screen_summary(failed, FACTORS).response, alone.response, atol=1e-12)
 
 
 def test_best_designs_by_the_strongest_factor(summary):

@@ -195,7 +195,7 @@ def test_what_looks_alike_is_named(study):
 
 def test_runs_without_replicates_are_said(study, design, factors, wear):
     """Without a repeated row scatter and misfit are one; a design of which a row is repeated does not say so."""
-    words = "no row is repeated with another packing"
+    words = "no row is repeated: the error"
     assert any(sentence.startswith(words) for sentence in screening_warnings(study))
     repeated = screen(pd.concat([design, design[:1]], ignore_index=True), factors, np.append(wear, 1.01 * wear[0]))
     assert not any(sentence.startswith(words) for sentence in screening_warnings(repeated))
