@@ -125,7 +125,8 @@ def predictions(lost: pd.DataFrame, scale: TimeScale, hours: Sequence[float]) ->
 
     lost: volumes of settings, all packings. Columns: those of SETTING, hours, revolution, packings, volume_mm3,
     reduction_percent (of a volume over that of the plain sample in the same packing, NaN without one), each with
-    <name>_low and <name>_high: the prediction interval, in which one further packing falls, NaN of one packing;
+    <name>_low and <name>_high: the prediction interval, in which one further packing falls, NaN of one packing. As the
+    plain sample tells the hours, a patterned volume is as unsure as its ratio to that of a plain sample beside it.
     extrapolated (True: beyond the run's last revolution), reason: why there is no volume.
     """
     rows = []
@@ -137,16 +138,17 @@ def predictions(lost: pd.DataFrame, scale: TimeScale, hours: Sequence[float]) ->
             found, beside = (volumes_at(table, revolution) for table in (own, plain))
             volume, ratio = estimate(found, log=True), estimate((found / beside).dropna(), log=True)
             row = {**setting, "hours": each, "revolution": revolution, "packings": len(found)}
-            row |= _predicted("volume_mm3", volume) | _reduction(ratio)
+            told_beside = setting["surface"] != PLAIN and not beside.empty
+            row |= _volume(volume, ratio if told_beside else volume) | _reduction(ratio)
             ratio_to_run = revolution / shared_revolutions(own)
             lacking = "" if np.isfinite(volume.value) else (TOO_FAR if ratio_to_run > FARTHEST else TOO_FEW)
             rows.append(row | {"extrapolated": ratio_to_run > 1.0, "reason": lacking})
     return pd.DataFrame(rows)
 
 
-def _predicted(name: str, found: Estimate) -> dict[str, float]:
-    low, high = found.of_one_more()
-    return {name: found.value, f"{name}_low": low, f"{name}_high": high}
+def _volume(volume: Estimate, unsure: Estimate) -> dict[str, float]:
+    low, high = (volume.value * end / unsure.value for end in unsure.of_one_more())
+    return {"volume_mm3": volume.value, "volume_mm3_low": low, "volume_mm3_high": high}
 
 
 def _reduction(ratio: Estimate) -> dict[str, float]:

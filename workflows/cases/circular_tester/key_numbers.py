@@ -138,19 +138,14 @@ def _with_intervals_of_means(compared: pd.DataFrame) -> pd.DataFrame:
     """Return the comparison with the intervals of the means of volumes and reductions, both told by a logarithm.
 
     One further packing falls within sqrt(packings + 1) times the reach of the mean's interval (`intervals.Estimate`).
-    Hours are told by the plain sample of the same packings: a patterned volume after hours is as sure as its ratio to
-    the plain one, and no surer.
     """
     share = 1.0 / np.sqrt(compared["packings"] + 1.0)
-    left = {name: 1.0 - compared[name] / 100.0 for name in (OURS, LOW, HIGH)}  # of reductions: patterned over plain
-    of_plain, is_volume = compared["quantity"] == f"{PLAIN} volume", compared["unit"] == "mm3"
     ends = {}
-    for name, other in ((LOW, HIGH), (HIGH, LOW)):
-        ratio = ((left[other] / left[OURS]) ** share)[compared["quantity"] == "reduction"]
-        of_hours = compared["hours"].map(dict(zip(compared["hours"][ratio.index], ratio, strict=True)))
-        reach = of_hours.where(~of_plain, (compared[name] / compared[OURS]) ** share)
-        reduction = 100.0 * (1.0 - left[OURS] * (left[name] / left[OURS]) ** share)
-        ends[name] = (compared[OURS] * reach).where(is_volume, reduction)
+    for name in (LOW, HIGH):
+        volume = compared[OURS] * (compared[name] / compared[OURS]) ** share
+        left, mean = (1.0 - compared[each] / 100.0 for each in (name, OURS))
+        reduction = 100.0 * (1.0 - mean * (left / mean) ** share)
+        ends[name] = volume.where(compared["unit"] == "mm3", reduction)
     return compared.assign(**ends)
 
 

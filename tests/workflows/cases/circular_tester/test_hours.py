@@ -57,6 +57,16 @@ def test_predictions():
     assert predictions(one, scale_of(one), [56.0])["reason"].unique().tolist() == [TOO_FEW]
 
 
+def test_a_patterned_volume_is_as_unsure_as_its_ratio_to_the_plain_one():
+    """The same packings tell the hours: what both samples of a bed wear more of is no scatter."""
+    lost = study.volumes(packings=3, scatter=0.1)
+    table = predictions(lost, scale_of(lost), [56.0]).set_index(["surface", "particle_scale"])
+    row = table.loc[("convex", 3.0)]
+    left = 1.0 - row[["reduction_percent_high", "reduction_percent", "reduction_percent_low"]].to_numpy(float) / 100.0
+    volumes = row[["volume_mm3_low", "volume_mm3", "volume_mm3_high"]].to_numpy(float)
+    np.testing.assert_allclose(volumes / volumes[1], left / left[1])
+
+
 def test_one_packing_has_no_prediction_interval():
     """Volumes and reductions are there, their intervals are not."""
     lost = study.volumes(noise=0.05)
