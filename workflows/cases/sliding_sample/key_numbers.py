@@ -84,8 +84,15 @@ def answers(summary: pd.DataFrame) -> list[str]:
         f"{less} of {len(found)} patterns wear less than their plain twin, {more} more; of {open_} it cannot be said."
     )
     alike = sum(not each.interval()[0] > best.interval()[1] for each in found.values()) - 1  # also without an interval
-    others = f" Of {alike} of {len(found) - 1} others it cannot be said that they wear more." if alike else ""
-    return [counts, f"Lowest: {said[0].lower()}{said[1:]}{others}"]
+    return [counts, f"Lowest: {said[0].lower()}{said[1:]}{_others_words(alike, len(found) - 1)}"]
+
+
+def _others_words(alike: int, others: int) -> str:
+    """Return of how many others it is open whether they wear more than the lowest; nothing where of none."""
+    if not alike:
+        return ""
+    who = f"{alike} of the {others} others" if alike < others else "the others" if others > 1 else "the other"
+    return f" Whether {who} wear{'' if others > 1 else 's'} more cannot be said."
 
 
 def facts(summary: pd.DataFrame, depths: pd.DataFrame, acceleration: float, error: float = 0.0) -> list[str]:
