@@ -190,10 +190,9 @@ def _wear_simplifications(
     if not wear["deform"]:
         rigid = ("Rigid sample", "The surface keeps its shape: depths are worn volume over area, not applied.")
         return [law, acceleration, rigid]
-    worn = summary[summary["worn_volume_m3"] > 0.0]
-    if worn.empty:
+    carried = 100.0 * largest_carried_share(summary)
+    if math.isnan(carried):
         return [law, acceleration]
-    carried = 100.0 * (worn["carried_volume_m3"] / worn["worn_volume_m3"]).max()
     caps = (
         "Capped steps",
         f"In one wear cycle a node moves at most {wear['largest_step_edge_fraction']:g} of its shortest edge, and at "
@@ -201,6 +200,16 @@ def _wear_simplifications(
         f"up to {carried:.3g} % of a run's worn volume is not yet applied to the shape.",
     )
     return [law, acceleration, caps, *worn_through_words(wear, summary)]
+
+
+def largest_carried_share(summary: pd.DataFrame) -> float:
+    """Return the largest share (-) of a run's worn volume that caps hold back at its end, of those whose shape wears:
+    rows of a design may keep it, column `deform`. NaN without such runs.
+    """
+    wears = summary["worn_volume_m3"] > 0.0
+    if "deform" in summary:
+        wears &= summary["deform"].astype("boolean").fillna(True)
+    return float((summary["carried_volume_m3"] / summary["worn_volume_m3"])[wears].max())
 
 
 def worn_through_words(wear: Mapping[str, Any], summary: pd.DataFrame) -> list[tuple[str, str]]:

@@ -15,7 +15,7 @@ from bulkwear.postproc.tables.summary import read_summary
 from bulkwear.workflows.report.friction import friction_light
 from bulkwear.workflows.report.page_parameters import answers_of_study, page_of
 from bulkwear.workflows.report.sections import CARE, SOUND, WEAK, Block, Light, Lights, Points, Section, Text
-from bulkwear.workflows.report.text import range_text, simplifications
+from bulkwear.workflows.report.text import largest_carried_share, number, range_text, simplifications
 
 TITLE = "Verdict"
 LEAST_CARRIED, MUCH_CARRIED = 0.01, 0.1  # -, of the worn volume: less changes no digit; more is another shape
@@ -123,13 +123,13 @@ def steady_light(answers: Sequence[str], of: str = "") -> Light:
 def cap_light(study: Mapping[str, Any], summary: pd.DataFrame) -> Light:
     """Return whether caps on a step hold back wear."""
     what = "Not limited by a cap"
-    share = float((summary["carried_volume_m3"] / summary["worn_volume_m3"]).max())
+    share = largest_carried_share(summary)
     if not study["settings"]["wear"]["deform"] or np.isnan(share):  # of a machine without updates nothing is worn
         return Light(what, CARE, "The shape is kept as built: wear is told, not applied.")
     state = SOUND if share < LEAST_CARRIED else CARE if share < MUCH_CARRIED else WEAK
     if state == SOUND:
         return Light(what, state, "All wear is in the shape.")
-    held = f"Caps on a step hold back up to {PERCENT * share:.2g} % of a run's wear at the end"
+    held = f"Caps on a step hold back up to {number(PERCENT * share, 2)} % of a run's wear at the end"
     return Light(what, state, f"{held}: volumes count it, the shape lags behind.")
 
 

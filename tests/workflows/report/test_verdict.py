@@ -27,6 +27,8 @@ def test_what_caps_hold_back_is_told(carried, state):
     for deform, table in ((False, summary), (True, nothing)):  # a machine without updates wears nothing
         kept = verdict.cap_light({"settings": {"wear": {"deform": deform}}}, table)
         assert kept.state == CARE and "kept as built" in kept.said
+    rigid = pd.DataFrame({"carried_volume_m3": [carried, 1.0], "worn_volume_m3": 1.0, "deform": [True, False]})
+    assert verdict.cap_light({"settings": {"wear": {"deform": True}}}, rigid) == light
 
 
 @pytest.mark.parametrize(("packings", "state"), [(1, WEAK), (2, CARE), (verdict.ENOUGH_PACKINGS, SOUND)])
