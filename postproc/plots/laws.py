@@ -143,4 +143,6 @@ def _worn_alone(shown: LawMap) -> tuple[SurfaceMesh, np.ndarray]:
 
 
 def _top(mesh: SurfaceMesh, depth: np.ndarray) -> float:
-    return area_quantile(depth, areas(mesh.points, mesh.triangles), TOP_SHARE)
+    """Return the depth at which the scale ends; where next to nothing of a surface wears, that of what does."""
+    area, worn = areas(mesh.points, mesh.triangles), depth > 0.0
+    return area_quantile(depth, area, TOP_SHARE) or area_quantile(depth[worn], area[worn], TOP_SHARE)

@@ -140,7 +140,8 @@ def coefficients_remark(laws: list[str]) -> list[str]:
     caption="""
     Depth over the mean depth of all that wears, by each law that the ledgers serve, on one scale, so that coefficients
     do not matter: 1 is wear that is even everywhere. The scale ends at the value that 99 % of the area of the most
-    uneven map does not exceed. The first run is shown, the most cycles in a row on the same triangles.
+    uneven map does not exceed, of the area that wears where that is less than a hundredth. The first run is shown, the
+    most cycles in a row on the same triangles whose ledgers are kept.
     """,
 )
 def maps_by_law(job: Job) -> Any:

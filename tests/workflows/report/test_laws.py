@@ -111,6 +111,14 @@ def test_maps_of_all_laws_have_one_scale():
     assert law_pictures([], []).axes == []
 
 
+def test_a_map_of_next_to_no_wear_has_the_scale_of_what_wears():
+    """As of a pin on a disc, whose track is less than a hundredth of it."""
+    plate = flat_plate(2e-2, 2e-2, 1e-3)
+    count = len(plate.triangles)
+    figure = law_pictures([LawMap("archard", plate, np.where(np.arange(count) == 0, count, 0.0), 1)], [])
+    assert count > 100 and figure.axes[-1].get_xlim() == pytest.approx((0.0, count))
+
+
 def test_every_part_that_wears_is_told_with_its_law(tmp_path):
     """By its name and the label of its faces; samples have one law for all faces, and a flow along the travel."""
     with machine_study(tmp_path) as study:
