@@ -79,6 +79,15 @@ def new_figure(remarks: Sequence[str], height: float = 4.0, compressed: bool = F
     return figure
 
 
+def height_of_pictures(views: Sequence[np.ndarray], columns: int, more: float) -> float:
+    """Return the height (inches) of a figure of rendered pictures (h, w, 3) in some columns.
+
+    more: inches of what stands above and below them
+    """
+    rows, (height, width) = math.ceil(len(views) / columns), views[0].shape[:2]
+    return rows * WIDTH / columns * height / width + more
+
+
 def facets(figure: Figure, names: Sequence[str], sharey: bool = False) -> dict[str, Axes]:
     """Return one axes per name, in a grid that is read line by line; spare places stay empty."""
     columns = facet_columns(len(names))

@@ -14,7 +14,7 @@ from matplotlib.patches import Circle
 
 from bulkwear.postproc.mesh import SurfaceMesh, edge_lengths_per_triangle
 from bulkwear.postproc.plots.scene import load_pyvista, new_plotter, trimmed
-from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture
+from bulkwear.postproc.plots.style import MAP, SMALLEST_FONT, height_of_pictures, new_figure, picture
 from bulkwear.postproc.tables.display import MICROMETRES, MILLIMETRES
 from bulkwear.workflows.cases.pin_on_disc.contours import CONTOURS, OPENING_LEVEL, contour_table, depth_map, track_radii
 from bulkwear.workflows.cases.pin_on_disc.plots.contours import SCHEME_COLOURS, SCHEME_NAMES
@@ -28,6 +28,7 @@ SHOWN_SLICE = 12.0  # degrees, of the disc that shows how contours are taken
 RELIEF = 0.15  # -, of the track's radius: how deep the exaggerated groove of the picture is
 STRETCH = 5.0  # -, by which it is wider
 RELIEF_CONTOURS = 720  # of the picture in 3-D
+ROUND_PICTURES = 1.9  # inches, of titles, the bar and remarks
 VIEW = (0.35, -1.0, 0.75)  # from where the disc is looked at
 
 
@@ -163,13 +164,14 @@ def worn_disc(meshes: Mapping[str, SurfaceMesh], track_radius: float, remarks: S
     """Draw the tracks of worn discs in 3-D, one per scheme, on one scale; depth and width exaggerated by the factors
     that are written above.
     """
-    figure = new_figure(remarks, LARGEST_HEIGHT)
-    grid = figure.subplots(1, len(meshes), squeeze=False)[0]
     deepest = max(np.finfo(float).tiny, *(-float(mesh.points[:, 2].min()) for mesh in meshes.values()))
     factor, limits = float(f"{RELIEF * track_radius / deepest:.0e}"), (0.0, MICROMETRES * deepest)
     said = f"depth exaggerated {factor:g} times, width {STRETCH:g} times"
-    for axes, (scheme, mesh) in zip(grid, meshes.items(), strict=True):
-        picture(axes, trimmed([_relief(mesh, track_radius, factor, limits)])[0])
+    views = trimmed([_relief(mesh, track_radius, factor, limits) for mesh in meshes.values()])
+    figure = new_figure(remarks, height_of_pictures(views, len(views), ROUND_PICTURES))
+    grid = figure.subplots(1, len(views), squeeze=False)[0]
+    for axes, scheme, view in zip(grid, meshes, views, strict=True):
+        picture(axes, view)
         axes.set_title(f"{SCHEME_NAMES[scheme]}\n{said}", fontsize=SMALLEST_FONT)
     bar = ScalarMappable(Normalize(*limits), MAP)
     figure.colorbar(bar, ax=list(grid), label="Depth (µm)", location="bottom", shrink=0.6, pad=0.02)
