@@ -34,7 +34,7 @@ from tests.verification.pin_cases import (
 DEMO_SCALE, TESTER_SCALE = 3.4, 6.0  # -, of particles; those of the studies at quick
 ELEMENT, BAND = 1e-4, 0.8e-3  # m; some 80,000 triangles; the groove is 1.1 mm wide
 QUICK_DEMO_SCALE, QUICK_ELEMENT = 4.0, 4e-4
-FEW, MANY, QUICK_MANY = 100, 900, 200  # time steps
+FEW, MANY, MANY_OF_PIN, QUICK_MANY = 100, 900, 3600, 200  # time steps; those of a pin are short
 ROUNDS, QUICK_ROUNDS = 5, 1
 FORMER_SKIN = 0.4  # -, of neighbour lists over the smallest radius, of beds before our search
 SKIN = re.compile(r"^(variable\s+skin\s+equal )(\S+)", re.MULTILINE)
@@ -56,7 +56,7 @@ def pin_deck(folder: Path, disc: SurfaceMesh, case: PinCase = FLAT) -> Path:
     """Return a folder with the deck of a pin that goes round on a whole disc at rest."""
     folder.mkdir(parents=True, exist_ok=True)
     set_down(folder, case, disc)
-    write_arc(folder / "cycle_1", case, disc, 1, 0, MANY)
+    write_arc(folder / "cycle_1", case, disc, 1, 0, MANY_OF_PIN)
     write_stl(folder / "cycle_1" / "surface.stl", disc.points, disc.triangles)
     return folder / "cycle_1"
 
@@ -110,10 +110,13 @@ def measures(folder: Path, quick: bool) -> list[Measure]:
         pin = name in (PIN, PIN_IN_GROOVE)
         thinner = () if pin else (THINNER, FORMER)  # the pin's skin is as it was
         ways = [named for named in WAYS if not pin or named != THINNER]
+        many = QUICK_MANY if quick else MANY_OF_PIN if pin else MANY
 
-        def way(named: str, deck: str = deck, here: Path = here, thinner: tuple = thinner) -> tuple[float, bytes]:
+        def way(
+            named: str, deck: str = deck, here: Path = here, thinner: tuple = thinner, many: int = many
+        ) -> tuple[float, bytes]:
             given = with_former_skin(deck) if named in thinner else deck
-            return steps_alone(here, given, WAYS[named], QUICK_MANY if quick else MANY)
+            return steps_alone(here, given, WAYS[named], many)
 
         found = in_turn({named: partial(way, named) for named in ways}, QUICK_ROUNDS if quick else ROUNDS)
         if len({ledger for named in (OURS, SEARCH) for _, ledger in found[named]}) > 1:

@@ -189,17 +189,17 @@ def calibration(
         axes.plot(
             place[beyond], best[beyond], "o", markersize=10, markerfacecolor="none", color=OTHER_COLOUR, label=words
         )
-    for index, (words, factor) in enumerate(zip(limits["run"], limits["largest_factor"], strict=True)):
-        if np.isfinite(factor) and x[0] <= test_revolutions / factor <= x[-1]:
-            axes.axvline(test_revolutions / factor, color=OTHER_COLOUR, linewidth=0.8, linestyle=":")
-            axes.text(
-                test_revolutions / factor,
-                0.6 - 0.08 * index,  # between the coefficients by the two rules
-                f" {words}: at most {factor:.1f}",
-                va="center",
-                fontsize=SMALLEST_FONT,
-                transform=axes.get_xaxis_transform(),
-            )
+    shown = limits[(test_revolutions / limits["largest_factor"]).between(x[0], x[-1])]
+    for index, (words, factor) in enumerate(zip(shown["run"], shown["largest_factor"], strict=True)):
+        axes.axvline(test_revolutions / factor, color=OTHER_COLOUR, linewidth=0.8, linestyle=":")
+        axes.text(
+            test_revolutions / factor,
+            0.6 - 0.08 * index,  # between the coefficients by the two rules
+            f" {words}: at most {factor:.1f}",
+            va="center",
+            fontsize=SMALLEST_FONT,
+            transform=axes.get_xaxis_transform(),
+        )
     axes.set(
         yscale="log", xlabel="Simulated revolutions that stand for the test", ylabel=r"Wear coefficient (Pa$^{-1}$)"
     )
