@@ -144,10 +144,11 @@ def simplifications(study: Mapping[str, Any], summary: pd.DataFrame, page: Modul
     """Return (what, how) of everything that is simpler here than on a machine, with the numbers of this
     study. page: the words of its case, which may tell laws of its own; nothing is said about wear where nothing wears.
     """
-    settings, laws = study["settings"], getattr(page, "laws_told", _law_of_study)(study)
+    settings = study["settings"]
     reduced = "; ".join(study["remarks"]) or "nothing: all sizes and the travel are those of the paper fidelity"
     if not study["wears"]:
         return [("Reduced scale", f"{reduced}."), *page.simplifications(study)]
+    laws = getattr(page, "laws_told", _law_of_study)(study)
     return [
         ("Reduced scale", f"{reduced}."),
         *_wear_simplifications(study, summary, " ".join(laws.values()), page.further_cap(settings)),
