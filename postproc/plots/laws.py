@@ -40,7 +40,6 @@ MOST_ON_LINEAR = 10.0  # -, largest over smallest ratio; beyond it bars go both 
 TICK_ROOM = 1.1  # times the ends of the bars, how far ticks reach
 FEW_DECADES = 1.5  # within which an axis of powers of ten has ticks at three times these too
 GROUP = 0.8  # of the distance between settings that bars fill
-ROUND_PICTURES = 1.9  # inches, of titles, the bar and remarks
 TOP_SHARE = 0.99  # of the area: more worn spots share the top colour
 
 
@@ -123,7 +122,7 @@ def law_pictures(maps: Sequence[LawMap], remarks: Sequence[str]) -> Figure:
         ]
     )
     columns = len(maps) if len(maps) <= 3 else math.ceil(len(maps) / 2)
-    figure = new_figure(remarks, height_of_pictures(views, columns, ROUND_PICTURES))
+    figure = new_figure(remarks, height_of_pictures(views, columns))
     grid = figure.subplots(math.ceil(len(maps) / columns), columns, squeeze=False)
     for axes in grid.ravel():
         axes.set_axis_off()

@@ -22,6 +22,7 @@ from bulkwear.postproc.mesh import PLAIN
 PUBLISHED = {"color": "black", "linestyle": "--", "linewidth": 1.2}
 RESOLUTION = 200  # dots per inch
 PALETTE = 256  # colours
+ROUND_PICTURES = 1.9  # inches of height, of titles, a bar below and remarks
 WIDTH, LARGEST_HEIGHT = 8.0, 5.0  # inches: 1600 x 1000 pixels, which every report shows whole
 SMALLEST_FONT = 9.0  # pt
 REMARK_LINE = 0.16  # inches, height of a line of remarks
@@ -79,18 +80,18 @@ def new_figure(remarks: Sequence[str], height: float = 4.0, compressed: bool = F
     return figure
 
 
-def height_of_pictures(views: Sequence[np.ndarray], columns: int, more: float) -> float:
-    """Return the height (inches) of a figure of rendered pictures (h, w, 3) in some columns.
-
-    more: inches of what stands above and below them
-    """
+def height_of_pictures(views: Sequence[np.ndarray], columns: int) -> float:
+    """Return the height (inches) of a figure of rendered pictures (h, w, 3) in some columns, with titles and a bar."""
     rows, (height, width) = math.ceil(len(views) / columns), views[0].shape[:2]
-    return rows * WIDTH / columns * height / width + more
+    return rows * WIDTH / columns * height / width + ROUND_PICTURES
 
 
-def facets(figure: Figure, names: Sequence[str], sharey: bool = False) -> dict[str, Axes]:
-    """Return one axes per name, in a grid that is read line by line; spare places stay empty."""
-    columns = facet_columns(len(names))
+def facets(figure: Figure, names: Sequence[str], sharey: bool = False, most: int | None = None) -> dict[str, Axes]:
+    """Return one axes per name, in a grid that is read line by line; spare places stay empty.
+
+    most: columns at most, where titles are long
+    """
+    columns = min(facet_columns(len(names)), most or len(names))
     rows = math.ceil(len(names) / columns)
     grid = figure.subplots(rows, columns, sharex=True, sharey=sharey, squeeze=False).ravel()
     for spare in grid[len(names) :]:

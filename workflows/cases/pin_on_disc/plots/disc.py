@@ -28,7 +28,6 @@ SHOWN_SLICE = 12.0  # degrees, of the disc that shows how contours are taken
 RELIEF = 0.15  # -, of the track's radius: how deep the exaggerated groove of the picture is
 STRETCH = 5.0  # -, by which it is wider
 RELIEF_CONTOURS = 720  # of the picture in 3-D
-ROUND_PICTURES = 1.9  # inches, of titles, the bar and remarks
 VIEW = (0.35, -1.0, 0.75)  # from where the disc is looked at
 
 
@@ -168,7 +167,7 @@ def worn_disc(meshes: Mapping[str, SurfaceMesh], track_radius: float, remarks: S
     factor, limits = float(f"{RELIEF * track_radius / deepest:.0e}"), (0.0, MICROMETRES * deepest)
     said = f"depth exaggerated {factor:g} times, width {STRETCH:g} times"
     views = trimmed([_relief(mesh, track_radius, factor, limits) for mesh in meshes.values()])
-    figure = new_figure(remarks, height_of_pictures(views, len(views), ROUND_PICTURES))
+    figure = new_figure(remarks, height_of_pictures(views, len(views)))
     grid = figure.subplots(1, len(views), squeeze=False)[0]
     for axes, scheme, view in zip(grid, meshes, views, strict=True):
         picture(axes, view)

@@ -59,7 +59,7 @@ def wear_volume(volumes: pd.DataFrame, fits: pd.DataFrame, trends: pd.DataFrame,
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     coefficients = sorted(volumes["wear_coefficient_per_pa"].unique())
-    panels = facets(figure, coefficients)
+    panels = facets(figure, coefficients, most=3)  # their titles are long
     for coefficient, axes in panels.items():
         chosen = volumes[volumes["wear_coefficient_per_pa"] == coefficient]
         _volume_panel(axes, chosen, coefficient, fits)
@@ -263,7 +263,7 @@ def comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         values = table[f"{quantity}_{'mm3' if quantity == 'volume' else 'mm'}"]
         bars = axes.barh(places, values, 0.6, color=colours)
         axes.axvline(values.iloc[0], color=LABORATORY_COLOUR, linewidth=0.8, linestyle="--")
-        off = [f"{each:+.0f} %" if each else "" for each in table[f"{quantity}_to_laboratory_percent"]]
+        off = [f"{round(each) + 0.0:+.0f} %" if each else "" for each in table[f"{quantity}_to_laboratory_percent"]]
         axes.bar_label(bars, off, padding=2.0, fontsize=SMALLEST_FONT)
         axes.margins(x=ROOM)
         axes.set_xlabel(f"{quantity.capitalize()} ({unit})")
