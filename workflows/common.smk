@@ -46,7 +46,7 @@ from bulkwear.workflows.engine.templates import templates_digest
 from bulkwear.workflows.engine.terminal import Terminal, listen
 from bulkwear.workflows.forecast.rates import damage_of, rates_file
 from bulkwear.workflows.report import figure_process
-from bulkwear.workflows.report.products import looked_up, paths_of, told_to
+from bulkwear.workflows.report.products import code_of, looked_up, paths_of, told_to
 
 min_version("9.0")
 
@@ -534,6 +534,19 @@ def table_in_report(path, captions=""):
 def told_of(product):
     """A param: what a product is told of a study."""
     return lambda wildcards: told_to(product, study_so_far(wildcards))
+
+
+def code_of_pages(*modules):
+    """A param: the hash of what tables, figures or a page that modules make depend on beside results and configuration.
+
+    Without modules, of what the case makes.
+    """
+    return lambda wildcards: code_by_name(wildcards.study, modules or (type(study_of(wildcards).case).__module__,))
+
+
+@cache  # many figures are of one module
+def code_by_name(study, modules):
+    return code_of(STUDIES[study], *modules)
 
 
 def used_rates(wildcards=None):

@@ -223,6 +223,17 @@ def test_a_changed_line_is_told_before_a_run_is_done_again(finished, tmp_path):
 
 
 @pytest.mark.solver
+def test_a_page_of_other_code_is_made_again_and_nothing_else(finished, tmp_path):
+    """A project's own page in the place of its case's: no run, no table, no figure."""
+    mine = shutil.copytree(finished["mine"], tmp_path / "mine", symlinks=True)
+    arguments = (*PROFILE, "--snakefile", str(PACKAGE / "Snakefile"), f"results/{STUDY}/report.html", "--dry-run")
+    assert not planned_jobs(said_of(mine, *arguments))
+    page = mine / "cases/dimpled/page.py"
+    page.write_text("from bulkwear.workflows.cases.sliding_sample.page import *  # noqa: F403\n")
+    assert planned_jobs(said_of(mine, *arguments)) == {"report": 1}
+
+
+@pytest.mark.solver
 def test_results_without_snakemakes_record_answer_no_other_question(finished, tmp_path):
     """Of results that were copied without .snakemake a run that was simulated from something else is made again, and
     its bed, which is told; what still holds is taken."""

@@ -1,13 +1,14 @@
 """Hashes of the code that simulated numbers depend on, part by part, so that two versions can be compared without git.
 
-Comments, docstrings and blank lines do not count, nor does what only draws, forecasts, checks or reports.
+Comments, docstrings and blank lines do not count, nor does what only draws, forecasts, checks or reports: of that,
+tables and figures have a hash of their own.
 """
 
 from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -34,6 +35,7 @@ ASIDE = {  # files that change no number of a run
 }
 # of cases, what refuses, forecasts or evaluates
 ASIDE_OF_CASES = {"checks.py", "evaluation.py", "machine_checks.py", "study.py", "volume.py", "work.py"}
+PLANS = ("workflows/config", "workflows/engine", "workflows/forecast")  # what plans and runs; others only ask it
 ROOTS = ("case.py", "decks.py", "driver.py", "simulations.py")  # of a case's folder, whence its code is found
 PACKAGE_NAME = "bulkwear"
 STATEMENTS = ("body", "orelse", "finalbody")  # of a statement, where it holds others
@@ -85,21 +87,44 @@ def case_files(case: str, root: Path = PACKAGE) -> list[str]:
     Figures, findings and pages are so not among them.
     """
     folder = root / OF_CASE["case"]
-    waiting, found = [path for name in ROOTS if (path := folder / case / name).is_file()], set()
+    starts = [path for name in ROOTS if (path := folder / case / name).is_file()]
+    reached = _reached(starts, root, lambda file: folder in file.parents and file.name not in ASIDE_OF_CASES)
+    return sorted(path.relative_to(root).as_posix() for path in reached)
+
+
+def code_of_shown(modules: Iterable[Path], root: Path = PACKAGE) -> str:
+    """Return the hash of modules that make tables, figures or pages, and of what of the package they reach by imports.
+
+    Of what plans and runs they reach those modules alone that they, or others that show, import themselves.
+    """
+    plans = [root / folder for folder in PLANS]
+    reached = _reached(modules, root, follows=lambda file: not any(folder in file.parents for folder in plans))
+    beside = {page for folder in {path.parent for path in reached} for page in folder.glob("*.html")}
+    return digest(*(_essence_of(path) for path in sorted(reached | beside)))[:LETTERS]
+
+
+def _reached(
+    starts: Iterable[Path],
+    root: Path,
+    counts: Callable[[Path], bool] = lambda file: True,
+    follows: Callable[[Path], bool] = lambda file: True,
+) -> set[Path]:
+    """Return the files that count of those at the starts and what is imported from there; follows: what is read on."""
+    waiting, found = list(starts), set()
     while waiting:
         path = waiting.pop()
-        if path not in found and path.name not in ASIDE_OF_CASES:
+        if path not in found and counts(path):
             found.add(path)
-            waiting += [file for file in _imported(path, root) if folder in file.parents]
-    return sorted(path.relative_to(root).as_posix() for path in found)
+            waiting += _imported(path, root) if follows(path) else []
+    return found
 
 
 def _imported(path: Path, root: Path) -> Iterator[Path]:
     """Yield the files of the package that a module imports, at its top or within its functions, for types alone not."""
-    for node in _imports(ast.parse(path.read_text(encoding="utf-8")).body):
-        folder = root.joinpath(*node.module.split(".")[1:])
-        names = [folder.with_suffix(".py"), *(folder / f"{name.name}.py" for name in node.names)]
-        yield from (file for file in names if file.is_file())
+    for module, names in _imports_of(path):
+        folder = root.joinpath(*module.split(".")[1:])
+        files = [folder.with_suffix(".py"), *(folder / f"{name}.py" for name in names)]
+        yield from (file for file in files if file.is_file())
 
 
 def _imports(block: Iterable[ast.AST]) -> Iterator[ast.ImportFrom]:
@@ -122,14 +147,22 @@ def _hash_of(root: Path, files: Iterable[str]) -> str:
 
 
 def _essence_of(path: Path) -> str:
-    found = path.stat()
-    return _kept_essence(path, found.st_mtime_ns)
+    return _kept(path, path.stat().st_mtime_ns)[0]
 
 
-@cache  # a process that simulates several runs asks for each
-def _kept_essence(path: Path, changed_ns: int) -> str:
+def _imports_of(path: Path) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    return _kept(path, path.stat().st_mtime_ns)[1]
+
+
+@cache  # a process that simulates several runs, or plans several figures, asks for each
+def _kept(path: Path, changed_ns: int) -> tuple[str, tuple[tuple[str, tuple[str, ...]], ...]]:
+    """Return what counts of a file, and of Python what it imports from the package: (module, names)."""
     text = path.read_text(encoding="utf-8")
-    return {".py": essence, ".cpp": essence_of_solver, ".h": essence_of_solver}.get(path.suffix, str)(text)
+    if path.suffix != ".py":
+        return {".cpp": essence_of_solver, ".h": essence_of_solver}.get(path.suffix, str)(text), ()
+    tree = ast.parse(text)
+    imports = tuple((node.module, tuple(name.name for name in node.names)) for node in _imports(tree.body))
+    return essence(text, tree), imports
 
 
 def essence_of_solver(text: str) -> str:
@@ -137,10 +170,10 @@ def essence_of_solver(text: str) -> str:
     return "\n".join(line.rstrip() for line in text.splitlines() if not line.lstrip().startswith("//") and line.strip())
 
 
-def essence(text: str) -> str:
-    """Return Python without comments, docstrings, blank lines and spaces at the ends of lines."""
+def essence(text: str, tree: ast.Module | None = None) -> str:
+    """Return Python without comments, docstrings, blank lines and spaces at line ends; tree: the text parsed."""
     lines = TEXT_OR_COMMENT.sub(lambda found: "" if found[0].startswith("#") else found[0], text).splitlines()
-    for said in _docstrings(ast.parse(text)):
+    for said in _docstrings(tree or ast.parse(text)):
         lines[said.lineno - 1 : said.end_lineno] = [""] * (said.end_lineno - said.lineno + 1)
     return "\n".join(line.rstrip() for line in lines if line.strip())
 

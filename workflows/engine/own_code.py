@@ -1,20 +1,22 @@
 """Hashes of what results depend on in a project beside its configuration: Python of its cases and laws, and its meshes.
 
-The package's own code has a version instead (`postproc.wear.WEAR_VERSION`): raised where a change gives other numbers.
+For runs the package's own code has a version instead (`postproc.wear.WEAR_VERSION`): raised where a change gives other
+numbers. Tables and figures, which cost no solver time, are made again where their code is another.
 """
 
 from __future__ import annotations
 
+import importlib.util
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 
 from bulkwear.postproc.wear.laws import law_of
 from bulkwear.workflows.engine.case import Case
 from bulkwear.workflows.engine.cases import case_folders
+from bulkwear.workflows.engine.code_parts import code_of_shown
 from bulkwear.workflows.engine.own_kernels import own_sources
-from bulkwear.workflows.engine.project import CASES_OF_PACKAGE, MESHES, current_project
-from bulkwear.workflows.engine.state import digest, file_digest
+from bulkwear.workflows.engine.project import CASES_OF_PACKAGE, MESHES, PACKAGE, current_project
+from bulkwear.workflows.engine.state import file_digest
 
 PLOTS = "plots"  # folder of what draws
 
@@ -47,15 +49,14 @@ def code_of_law(name: str) -> dict[str, str]:
     return {path.name: _hash(path) for path in (*files, *own_sources(law_of(name).kernels).values())}
 
 
-def code_of_pages(module: ModuleType) -> str:
-    """Return the hash of a project's own module of figures or of its page, and of what draws in plots/ beside it.
+def code_that_shows(*modules: str) -> str:
+    """Return the hash of modules of tables, figures or a page, by their names, and of what of the package they import.
 
-    "" for a module of the package.
+    Of a project's own modules it holds what draws in plots/ beside them as well.
     """
-    path = Path(module.__file__)
-    if CASES_OF_PACKAGE in path.parents or current_project().folder not in path.parents:
-        return ""
-    return digest(*map(_hash, [path, *sorted((path.parent / PLOTS).rglob("*.py"))]))
+    paths = [Path(importlib.util.find_spec(name).origin) for name in modules]
+    own = [path for path in paths if PACKAGE not in path.parents]
+    return code_of_shown([*paths, *(file for path in own for file in (path.parent / PLOTS).rglob("*.py"))])
 
 
 def _hash(path: Path) -> str:

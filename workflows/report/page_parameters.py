@@ -9,7 +9,6 @@ from typing import Any
 from bulkwear.postproc.wear.laws import NEUTRAL_LAW
 from bulkwear.workflows.config.design import Study
 from bulkwear.workflows.engine.cases import case_module, find_case
-from bulkwear.workflows.engine.own_code import code_of_pages
 from bulkwear.workflows.report.charts import tables_of_charts
 from bulkwear.workflows.report.products import Product, figures_of, products_of_study
 from bulkwear.workflows.report.text import number_and_unit
@@ -45,7 +44,6 @@ def page_parameters(study: Study) -> dict[str, Any]:
     return {
         "name": study.name,
         "case": study.case.name,
-        "code": code_of_pages(page_of(study.case.name)),
         "wears": study.case.wears,
         "title": study.title,
         "question": study.question,

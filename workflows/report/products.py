@@ -15,18 +15,18 @@ Modules that are slow to import are imported inside the function: Snakemake read
 from __future__ import annotations
 
 import importlib
-import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.engine.case import Case
 from bulkwear.workflows.engine.cases import case_module, find_case
-from bulkwear.workflows.engine.own_code import code_of_pages
+from bulkwear.workflows.engine.own_code import code_that_shows
 from bulkwear.workflows.engine.project import CONFIG, PACKAGE, current_project
 from bulkwear.workflows.engine.provenance import simulating_code
+from bulkwear.workflows.engine.state import digest
 from bulkwear.workflows.report.simulated import figure_remark, versions_of
 from bulkwear.workflows.report.spot_checks import as_new_as, passed, read_checks
 
@@ -211,9 +211,18 @@ def outputs_of(product: Product, study: str = "{study}") -> dict[str, str]:
 
 
 def told_to(product: Product, study: Study) -> dict[str, Any]:
-    """Return what of a study's configuration a product's job is told; of a project's own product its code as well."""
-    code = code_of_pages(sys.modules[product.make.__module__])
-    return {name: ask(study) for name, ask in product.told.items()} | ({"code": code} if code else {})
+    """Return what of a study's configuration a product's job is told."""
+    return {name: ask(study) for name, ask in product.told.items()}
+
+
+def code_of(study: Study, *modules: str) -> str:
+    """Return the hash of what tables, figures or a page of a study depend on beside its results and its configuration.
+
+    That is the code of the modules that make them, and what they compare the versions with that simulated: the present
+    code, and spot checks of the study.
+    """
+    checks = [asdict(check) for check in read_checks(DOCS) if check.study == study.name]
+    return digest(code_that_shows(*modules), {"now": simulating_code(study.case)["parts"], "checks": checks})
 
 
 def write_product(product: Product, job: Job, outputs: Mapping[str, str]) -> None:

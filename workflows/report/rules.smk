@@ -1,7 +1,9 @@
 """Tables and figures of a study, and its page."""
 
-from bulkwear.workflows.report.page_parameters import figure_remarks, page_parameters, page_templates
+from bulkwear.workflows.report.page_parameters import figure_remarks, page_of, page_parameters, page_templates
 from bulkwear.workflows.report.products import outputs_of, product_files, rules_of
+
+PAGE = "bulkwear.workflows.report.page"  # makes it, and is slow to import
 
 
 report: "description.rst"
@@ -27,6 +29,7 @@ for RULE_OF_PRODUCT, (NAMES, PRODUCT) in rules_of(STUDIES.values()).items():
             case=case_of,
             product=PRODUCT.name,
             told=told_of(PRODUCT),
+            code=code_of_pages(PRODUCT.make.__module__),
             remarks=lambda wildcards: figure_remarks(study_so_far(wildcards)),
             runs=lambda wildcards: [run.name for run in study_so_far(wildcards).runs],
             title=PRODUCT.title,
@@ -74,6 +77,7 @@ rule summary:
         study=WITH_SUMMARY or "no_study",
     params:
         case=case_of,
+        code=code_of_pages(),
     message:
         "Summary of {wildcards.study}"
     script:
@@ -95,6 +99,7 @@ rule report:
         "results/{study}/logs/report.log",
     params:
         study=lambda wildcards: page_parameters(study_so_far(wildcards)),
+        code=lambda wildcards: code_by_name(wildcards.study, (PAGE, page_of(case_of(wildcards)).__name__)),
     message:
         "Page of {wildcards.study}"
     script:

@@ -7,7 +7,7 @@ import pytest
 
 from bulkwear.workflows.engine import provenance
 from bulkwear.workflows.engine.cases import case_names
-from bulkwear.workflows.engine.code_parts import PARTS, essence, essence_of_solver, part_files, part_hashes
+from bulkwear.workflows.engine.code_parts import PARTS, code_of_shown, essence, essence_of_solver, part_files, part_hashes
 from bulkwear.workflows.engine.project import PACKAGE
 from tests import REPOSITORY
 
@@ -61,6 +61,31 @@ def test_a_change_of_code_is_one_of_its_part_alone(copied, file, part):
     path.write_text(text)
     assert part_hashes([CASE], copied) == before
     assert {name for name in OF_RUN if before[name] != after[name]} == ({part} if part else set())
+
+
+@pytest.mark.parametrize(
+    ("file", "added", "counts"),
+    [
+        (f"workflows/cases/{CASE}/figures.py", "ADDED = 1", True),
+        (f"workflows/cases/{CASE}/figures.py", "# said", False),
+        ("postproc/plots/style.py", "ADDED = 1", True),  # imported within the functions
+        ("postproc/plots/compare.html", "<p>", True),
+        ("postproc/statistics/intervals.py", "ADDED = 1", True),
+        ("workflows/report/products.py", "ADDED = 1", True),
+        ("workflows/engine/project.py", "ADDED = 1", True),
+        ("workflows/engine/wear_step.py", "ADDED = 1", False),  # what the engine imports, figures do not ask
+        ("workflows/cases/calibration/figures.py", "ADDED = 1", False),
+    ],
+)
+def test_a_change_of_code_that_figures_reach_changes_their_hash(copied, file, added, counts):
+    """A line added to what they import, at any distance; a comment, another case and what plans and runs does not."""
+    figures, path = copied / f"workflows/cases/{CASE}/figures.py", copied / file
+    before, text = code_of_shown([figures], copied), path.read_text()
+    path.write_text(f"{text}\n{added}\n")
+    after = code_of_shown([figures], copied)
+    path.write_text(text)
+    assert code_of_shown([figures], copied) == before
+    assert (after != before) == counts
 
 
 def test_words_about_code_are_no_code():

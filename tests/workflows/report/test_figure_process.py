@@ -65,9 +65,9 @@ def test_what_figures_need_is_there_before_it_forks():
     """The libraries, and the code that is compared with that of the runs: read by no figure again."""
     code = (
         "import sys; from bulkwear.workflows.report import figure_process; figure_process._preload();"
-        "from bulkwear.workflows.engine.code_parts import _kept_essence, part_hashes;"
-        "read = _kept_essence.cache_info().misses; part_hashes(());"
-        "print(read > 0, _kept_essence.cache_info().misses - read, set(figure_process.LIBRARIES) <= set(sys.modules))"
+        "from bulkwear.workflows.engine.code_parts import _kept, part_hashes;"
+        "read = _kept.cache_info().misses; part_hashes(());"
+        "print(read > 0, _kept.cache_info().misses - read, set(figure_process.LIBRARIES) <= set(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=REPOSITORY, capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["True", "0", "True"]

@@ -12,6 +12,8 @@ rule track_tables:
         "results/{study}/logs/track_tables_{run}.log",
     benchmark:
         "results/{study}/logs/track_tables_{run}.benchmark.tsv"
+    params:
+        code=code_of_pages(*(f"bulkwear.workflows.cases.pin_on_disc.{name}" for name in ("run_in", "runs", "volume"))),
     message:
         "Contours and volumes of {wildcards.study}, {wildcards.run}"
     script:
