@@ -7,7 +7,14 @@ import pytest
 
 from bulkwear.workflows.engine import provenance
 from bulkwear.workflows.engine.cases import case_names
-from bulkwear.workflows.engine.code_parts import PARTS, code_of_shown, essence, essence_of_solver, part_files, part_hashes
+from bulkwear.workflows.engine.code_parts import (
+    PARTS,
+    code_of_shown,
+    essence,
+    essence_of_solver,
+    part_files,
+    part_hashes,
+)
 from bulkwear.workflows.engine.project import PACKAGE
 from tests import REPOSITORY
 
