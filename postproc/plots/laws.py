@@ -40,6 +40,8 @@ MOST_ON_LINEAR = 10.0  # -, largest over smallest ratio; beyond it bars go both 
 TICK_ROOM = 1.1  # times the ends of the bars, how far ticks reach
 FEW_DECADES = 1.5  # within which an axis of powers of ten has ticks at three times these too
 GROUP = 0.8  # of the distance between settings that bars fill
+MOST_IN_COLUMN = 28  # names of rows under one another, that do not touch
+LETTER_WIDTH = 0.58  # of the size of its font, in the mean of a name's letters and a little more
 TOP_SHARE = 0.99  # of the area: more worn spots share the top colour
 
 
@@ -66,14 +68,24 @@ def law_bars(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
             look = {"color": SERIES_COLOURS[number % len(SERIES_COLOURS)], "label": law.replace("_", " ")}
             axes.barh(at, value - base, thick, base, error_kw={"elinewidth": 0.9, "capsize": 2}, **known, **look)
         axes.set_title(PANELS[name], loc="left", fontsize=SMALLEST_FONT)
-        axes.tick_params(axis="y", length=0)
+        axes.tick_params(axis="y", which="both", length=0)
         axes.grid(visible=False, axis="y")
         if base == 0.0:
             axes.set_xlim(left=0.0)
-    grid[0].set_yticks(range(len(order)), order)
-    grid[0].set_ylim(len(order) - 0.5, -0.5)  # the first on top
+    _name_rows(grid[0], order)
     figure.legend(*named_once(grid), loc="outside upper left", ncols=len(laws))
     return figure
+
+
+def _name_rows(axes: Axes, names: Sequence[str]) -> None:
+    """Put names beside rows, the first on top; of many every other one further out, at the end of a line."""
+    columns = 1 if len(names) <= MOST_IN_COLUMN else 2
+    axes.set_yticks(range(0, len(names), columns), names[::columns])
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    if columns > 1:
+        out = LETTER_WIDTH * SMALLEST_FONT * max(map(len, names[::columns]))
+        axes.set_yticks(range(1, len(names), columns), names[1::columns], minor=True)
+        axes.tick_params(axis="y", which="minor", length=out, width=0.4, color="0.75", labelsize=SMALLEST_FONT)
 
 
 def _places(table: pd.DataFrame) -> pd.Series:

@@ -1,11 +1,13 @@
 """Figures of laws side by side: what they draw, say, and make interactive; which laws are compared in what."""
 
+from itertools import combinations
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from bulkwear.meshes.plate import flat_plate
-from bulkwear.postproc.plots.laws import law_bars, law_pictures
+from bulkwear.postproc.plots.laws import MOST_IN_COLUMN, law_bars, law_pictures
 from bulkwear.postproc.plots.style import remarks_of
 from bulkwear.postproc.tables.law_volumes import LawMap, laws_of_settings, map_table
 from bulkwear.workflows.report.figure_findings import laws_apart, laws_on_designs, steepest_map
@@ -65,6 +67,20 @@ def test_a_bar_is_named_by_its_part_where_its_setting_has_several():
     left = law_bars(table, []).axes[0]
     assert [text.get_text() for text in left.get_yticklabels()] == ["A liner", "B liner", "A lip", "B lip"]
     assert left.yaxis_inverted()
+
+
+@pytest.mark.parametrize("settings", [MOST_IN_COLUMN, MOST_IN_COLUMN + 1, 40])
+def test_names_of_many_settings_do_not_touch(settings):
+    """Every row has its name."""
+    one = volumes("part", front=False).query("setting == 'A'")
+    named = [one.assign(setting=f"m{number:02d}-per-triangle") for number in range(settings)]
+    figure = law_bars(laws_of_settings(pd.concat(named)), [])
+    figure.canvas.draw()
+    left = figure.axes[0]
+    labels = [label for label in (*left.get_yticklabels(), *left.get_yticklabels(minor=True)) if label.get_text()]
+    boxes = [label.get_window_extent() for label in labels]
+    assert len(boxes) == settings
+    assert not [pair for pair in combinations(boxes, 2) if pair[0].overlaps(pair[1])]
 
 
 def test_the_design_on_which_laws_disagree_is_named():
