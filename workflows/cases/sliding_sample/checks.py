@@ -22,12 +22,15 @@ from bulkwear.workflows.config.run_checks import (
     physical_modulus_known,
 )
 from bulkwear.workflows.engine.derived import ADAPTIVE, PERIODIC, ROUNDING, WINDOW, window_lengths
-from bulkwear.workflows.engine.grains import smallest_radius
+from bulkwear.workflows.engine.grains import CLUMP, grain_kind, largest_extent, smallest_radius
 from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
 PACKING = "packing"  # block of settings, of containers
 TINY_FRICTION = 1e-3  # -, of a floor that drives nothing
 LARGEST_TRAVEL = 100.0  # m, as the schema has it for sliding.travel_mm
+# -, of a periodic bed, in largest extents: in a narrower one a particle can touch a neighbour and that one's image, and
+# hangs between them. No wider bound, for small comparisons go down to 2.1; studies have 4.7 and more.
+LEAST_WIDTH_EXTENTS = 2.0
 
 
 def containers_given(run: CheckedRun) -> Fault | None:
@@ -35,6 +38,17 @@ def containers_given(run: CheckedRun) -> Fault | None:
     if PARTICLE_SCALE not in run.row.values or PACKING in run.settings:
         return None
     return PACKING, "a block of keys, as in config/studies/particle_size.yaml, where rows give particle_scale"
+
+
+def bed_wider_than_arches(run: CheckedRun) -> Fault | None:
+    """A bed, which is periodic across, is wider than two of its largest particles."""
+    least = LEAST_WIDTH_EXTENTS * largest_extent(run.parameters["particle"])
+    if run.parameters["bed"]["width_m"] > least:
+        return None
+    return "bed.width_mm", (
+        f"above {millimetres(least)}, two of the largest particles: in a narrower bed, which is periodic across, they"
+        " hang between a neighbour and its image"
+    )
 
 
 def sample_in_bed(run: CheckedRun) -> Fault | None:
@@ -184,6 +198,17 @@ def _travel_fault(run: CheckedRun, bound: str, travel: float, reason: str) -> Fa
     return "sliding.test_duration_h", f"at {bound} {hours:.6g} h at this acceleration and velocity, {reason}"
 
 
+def clumps_set_in_motion(run: CheckedRun) -> Fault | None:
+    """With clumps the run-in has a time step, in which they are set in motion."""
+    if grain_kind(run.parameters["particle"]) != CLUMP or run.parameters["derived"]["run_in_steps"] >= 1:
+        return None
+    least = run.parameters["sliding"]["velocity_m_per_s"] * run.parameters["derived"]["time_step_s"]
+    return (
+        "sliding.run_in_mm",
+        f"at least {millimetres(least)}, one time step, with clumps, which are set in motion in it",
+    )
+
+
 def sampled_in_cycle(run: CheckedRun) -> Fault | None:
     """Contacts are sampled more than once in a cycle, where they are sampled (`ledger: dumps`)."""
     steps = _raw_steps(run)
@@ -215,6 +240,7 @@ SLIDING_CHECKS: tuple[Check, ...] = (
     bump_not_too_steep,
     pattern_above_floor,
     no_particle_between,
+    bed_wider_than_arches,
     sample_in_bed,
     skirt_in_bed,
     ramp_holds_bed,
@@ -225,6 +251,7 @@ SLIDING_CHECKS: tuple[Check, ...] = (
     element_resolves_pattern,
     travel_within_reason,
     cycle_long_enough,
+    clumps_set_in_motion,
     sampled_in_cycle,
     physical_modulus_known,
 )
