@@ -2,12 +2,14 @@
 
 The hash of a run holds what solver and wear step consume: the decks of cycle 0 and of the first wear cycle, the
 sections of parameters that the driver itself reads, and the version of the wear code. A setting that changes none of
-them changes no hash, so nothing is simulated again for it.
+them changes no hash, so nothing is simulated again for it. Where later cycles may be longer than the first, the hash
+has what their decks take besides.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import tempfile
 import textwrap
 from collections.abc import Mapping
@@ -21,7 +23,7 @@ from bulkwear.postproc.wear.kernel_sums import kernel_sums
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Case, Parameters
 from bulkwear.workflows.engine.chain import DECK, WORN_THROUGH, Chain, bed_deck_text, write_bed
-from bulkwear.workflows.engine.derived import laws_beside
+from bulkwear.workflows.engine.derived import ADAPTIVE, ROUNDING, laws_beside
 from bulkwear.workflows.engine.own_code import code_of_case, code_of_law
 from bulkwear.workflows.engine.schedule import first_span, known_spans
 from bulkwear.workflows.engine.worn_pair import BESIDE
@@ -34,6 +36,7 @@ DERIVED = (
 
 
 SIMULATED_FROM = "simulated_from.json"  # in cycle 0 of a run
+LONGER_CYCLES = "longer_cycles"  # key of what only the decks of later cycles have
 LONGEST_LINE = 100  # characters of a deck's line or a setting in a sentence
 
 
@@ -95,6 +98,7 @@ def simulated_from(case: Case, parameters: Parameters, bed: Parameters | None) -
         "pieces": [case.piece_ends(parameters, bed, span) for span in spans],
         **{section: _simulated(case, section, values) for section, values in sections.items()},
         **({BESIDE: beside} if (beside := kernel_sums(laws_beside(parameters))) else {}),
+        **_of_longer_cycles(parameters),
         **_code_of_project(case, parameters),
     }
     return {
@@ -103,6 +107,26 @@ def simulated_from(case: Case, parameters: Parameters, bed: Parameters | None) -
         "surface": _simulated(case, "surface", surface_from(case, parameters)),
         "bed": bed or {},
     }
+
+
+def _of_longer_cycles(parameters: Parameters) -> dict[str, Any]:
+    """Return what decks of adaptive cycles longer than the first one take, where that one's deck does not tell it.
+
+    It tells the interval of pictures up to its own length, and an interval of looks at the wear that is a whole part of
+    it, if its steps are enough to tell that part from the others.
+    """
+    sliding, derived = parameters["sliding"], parameters["derived"]
+    if sliding["cycles"] != ADAPTIVE:
+        return {}
+    steps, found = derived["first_cycle_steps"], {}
+    if (pictures := derived.get("picture_interval_steps", 0)) > steps:
+        found["picture_interval_steps"] = pictures
+    looks = parameters["solver"].get("wear_interval_m") if parameters["ledger"] == "solver" else None
+    if looks:
+        parts = max(round(sliding["first_cycle_m"] / looks), 1)
+        if parts**2 > steps or not math.isclose(parts * looks, sliding["first_cycle_m"], rel_tol=ROUNDING):
+            found["wear_interval_m"] = looks
+    return {LONGER_CYCLES: found} if found else {}
 
 
 def _simulated(case: Case, section: str, values: Any) -> Any:

@@ -7,6 +7,7 @@ import shutil
 import pytest
 
 from bulkwear.workflows.cases.sliding_sample import case
+from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine import chain, inputs, templates
 from bulkwear.workflows.engine.inputs import SimulatedFrom, bed_digest, job_digest, other_length, run_digest
 from bulkwear.workflows.engine.schedule import known_spans
@@ -55,6 +56,46 @@ def test_changed_wear_code_changes_the_hash(study, monkeypatch):
     before = digest_of(study, "R9_convex")
     monkeypatch.setattr(inputs, "WEAR_VERSION", inputs.WEAR_VERSION + 1)
     assert digest_of(study, "R9_convex") != before
+
+
+LATER = {"picture_interval_mm": (20, 100, 1000), "wear_interval_mm": (10, 9.6, 10.4, 40)}  # the first one is told
+
+
+@pytest.mark.parametrize("key", LATER)
+def test_what_only_longer_adaptive_cycles_take_changes_the_hash(key):
+    """Intervals of pictures and of looks at the wear that the first cycle's deck does not tell apart; the hash of the
+    study as it is has none of them.
+    """
+
+    def settings(value):
+        found = load_study("worn_bump", overrides={"fidelity": "quick", "solver": {key: value}})
+        (run,) = found.runs
+        return inputs.simulated_from(found.case, run.parameters, found.beds[found.bed_of(run.name)])
+
+    hashes = {value: settings(value) for value in LATER[key]}
+    assert len({inputs.digest_of(found) for found in hashes.values()}) == len(LATER[key])
+    told = [inputs.LONGER_CYCLES not in found["settings"] for found in hashes.values()]
+    assert told == [True] + [False] * (len(LATER[key]) - 1)
+
+
+def test_looks_that_one_number_of_steps_stands_for_are_told_apart():
+    """So many in the first adaptive cycle that their steps, rounded, are those of others."""
+    found = load_study("worn_bump", overrides={"fidelity": "quick"}).runs[0].parameters
+    steps, first = found["derived"]["first_cycle_steps"], found["sliding"]["first_cycle_m"]
+    deck_has = {}
+    for parts in range(1, steps):
+        solver = {**found["solver"], "wear_interval_m": first / parts}
+        besides = inputs._of_longer_cycles({**found, "solver": solver})
+        deck_has.setdefault((-(-steps // parts), str(besides)), []).append(parts)
+    assert all(len(same) == 1 for same in deck_has.values())
+
+
+def test_equal_cycles_have_nothing_besides(study):
+    """Whatever their intervals, their hash is that of the first one's deck."""
+    parameters = copy.deepcopy(study.run("R9_convex").parameters)
+    parameters["solver"].update(wear_interval_m=1.0)
+    parameters["derived"].update(picture_interval_steps=10 * parameters["derived"]["travel_steps"])
+    assert inputs._of_longer_cycles(parameters) == {}
 
 
 def test_an_edited_template_changes_the_hash(study, monkeypatch):
