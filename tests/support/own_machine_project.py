@@ -36,6 +36,7 @@ CORNERS = {"liner": (-120, -50, -30), "plate": (140, -50, -120), "paddle": (0, -
 SLOPE_DEG = 35.0  # of the liner, about y: what slides on it goes along +x
 SHAFT = (60.0, 0.0, -220.0)  # mm, about which the paddle turns, along y
 SPEED_RPM = 60.0
+FASTER = {"paddle": {"motion": {"speed_rpm": 75}}}  # of parts; a turn in a run without updates
 PARTS: dict[str, Any] = {
     "liner": {"file": "liner.stl", "role": "wears", "edge_mm": 25, "thickness_mm": 30, "wear_coefficient_error": 0.2},
     "plate": {"file": "plate.stl", "role": "wears", "edge_mm": 30, "law": "finnie", "wear_coefficient_per_pa": 1.0e-12},

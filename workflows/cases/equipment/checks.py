@@ -9,7 +9,7 @@ from typing import Any
 
 from bulkwear.postproc.wear.coefficient import DIMENSIONLESS, PER_PA
 from bulkwear.postproc.wear.laws import LAWS
-from bulkwear.workflows.cases.equipment.motion_checks import MOTION_CHECKS
+from bulkwear.workflows.cases.equipment.motion_checks import COUNTED_MOTION_CHECKS, MOTION_CHECKS
 from bulkwear.workflows.cases.equipment.parameters import REPORTS, SECONDS_PER_HOUR, most_blocks, start_up_blocks
 from bulkwear.workflows.cases.equipment.placing import largest_diameter
 from bulkwear.workflows.cases.equipment.room_checks import ROOM_CHECKS, T_PER_H
@@ -332,6 +332,7 @@ EQUIPMENT_CHECKS: tuple[Check, ...] = (
     patches_large_enough,
     blocks_in_order,
     blocks_long_enough,
+    *COUNTED_MOTION_CHECKS,
     blocks_see_particles,
     pictures_divide_a_block,
     steps_within_reason,

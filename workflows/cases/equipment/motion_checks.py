@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from bulkwear.workflows.cases.equipment.motions import FREE, NEEDED, motion_faults, motion_of
+from bulkwear.workflows.cases.equipment.motions import FREE, NEEDED, frame_turns, motion_faults, motion_of, turn_s
 from bulkwear.workflows.cases.equipment.parameters import most_blocks
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault
 from bulkwear.workflows.config.units import to_si
@@ -16,6 +16,9 @@ from bulkwear.workflows.config.units import to_si
 TINY = 1e-12  # of a component of a direction; its square is lost beside 1
 STILL = 1e-6  # rad/s, rad, m/s or m: a part that moves by no more stands still for as long as anything is simulated
 FEWEST_STEPS_OF_PERIOD = 20.0  # in which a part swings once
+PART_OF_SWING = 0.05  # of a block, by which it may differ from whole swings
+SECONDS_PER_MINUTE = 60.0
+LEAST_TURNS = 1.0 - 1e-3  # of a part that wears, in the longest run
 # keys of a motion as parameters have them -> as a study has them
 WRITTEN = {
     next(iter(to_si({key: 0.0}))): key
@@ -70,7 +73,7 @@ def _allowed_stop(parameters: Mapping[str, Any], motion: Mapping[str, Any], full
     stop, start_up = motion.get("stop_s", math.inf), parameters["start_up"]["most_s"]
     if stop < full or not stop:
         return f"at least {full:g} s, start_s and ramp_s together" if full else "above 0 s: the part would never move"
-    longest = most_blocks(parameters) * parameters["sampling"]["block_s"]
+    longest = _longest_s(parameters)
     if stop + motion.get("ramp_s", 0.0) <= start_up or stop >= longest:
         return None
     with_ramp = ", less ramp_s" if "ramp_s" in motion else ""
@@ -82,8 +85,7 @@ def _allowed_stop(parameters: Mapping[str, Any], motion: Mapping[str, Any], full
 
 def swings_are_seen(run: CheckedRun) -> Fault | None:
     """A part swings once within a run, or more often, and a swing takes many time steps."""
-    derived, block_s = run.parameters["derived"], run.parameters["sampling"]["block_s"]
-    least, most = FEWEST_STEPS_OF_PERIOD * derived["time_step_s"], most_blocks(run.parameters) * block_s
+    least, most = FEWEST_STEPS_OF_PERIOD * run.parameters["derived"]["time_step_s"], _longest_s(run.parameters)
     for part, motion in _moving(run):
         if "period_s" in motion and not least <= motion["period_s"] <= most:
             reason = f"{FEWEST_STEPS_OF_PERIOD:g} time steps to the longest that the run may get"
@@ -91,8 +93,46 @@ def swings_are_seen(run: CheckedRun) -> Fault | None:
     return None
 
 
+def blocks_are_whole_swings(run: CheckedRun) -> Fault | None:
+    """A block has whole swings of each part that swings, or so many that a part of one hardly counts."""
+    block_s = run.parameters["sampling"]["block_s"]
+    for part, motion in _moving(run):
+        swings = block_s / motion.get("period_s", block_s)
+        if abs(swings - max(round(swings), 1)) > PART_OF_SWING * swings:
+            nearest = max(round(swings), 1) * motion["period_s"]
+            return "sampling.block_s", (
+                f"a whole number of swings of parts.{part}, {motion['period_s']:g} s each, within"
+                f" {100.0 * PART_OF_SWING:g} % of the block, such as {nearest:.6g} s: the wear of a part of a swing is"
+                " not that of hours of operation"
+            )
+    return None
+
+
+def turned_once(run: CheckedRun) -> Fault | None:
+    """A part that wears and turns as a rotation makes a turn or more in the longest run."""
+    longest, start_up = _longest_s(run.parameters), run.parameters["start_up"]["most_s"]
+    for part in run.parameters["parts"]:
+        motion = part["motion"]
+        stands = (motion or {}).get("stop_s", math.inf) <= start_up
+        if not part["wears"] or not frame_turns(motion) or stands or longest >= LEAST_TURNS * turn_s(motion):
+            continue
+        least = SECONDS_PER_MINUTE / longest
+        return f"parts.{part['name']}.motion.speed_rpm", (
+            f"at least {least:.4g} rpm, a turn in the longest that the run may get, {longest:.4g} s: wear would be"
+            " counted in one attitude of the part; or a longer sampling.block_s; or kind: turning_surface, of a part"
+            " that looks alike all round"
+        )
+    return None
+
+
+def _longest_s(parameters: Mapping[str, Any]) -> float:
+    """Return the longest (s) that a run may get."""
+    return most_blocks(parameters) * parameters["sampling"]["block_s"]
+
+
 def _moving(run: CheckedRun) -> list[tuple[str, Mapping[str, Any]]]:
     return [(part["name"], part["motion"]) for part in run.parameters["parts"] if part["motion"]]
 
 
 MOTION_CHECKS: tuple[Check, ...] = (motions_complete, motions_move, swings_are_seen)
+COUNTED_MOTION_CHECKS: tuple[Check, ...] = (blocks_are_whole_swings, turned_once)  # of blocks that are long enough

@@ -32,7 +32,7 @@ from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, solver_command, solver_environment
 from bulkwear.workflows.engine.wear_step import wear
 from tests import REPOSITORY
-from tests.support.own_machine_project import CORNERS, SHAFT, SIZES, machine_chain, machine_study
+from tests.support.own_machine_project import CORNERS, FASTER, SHAFT, SIZES, machine_chain, machine_study
 from tests.support.patience import LONGEST_S
 from tests.support.stl import stl_facets
 
@@ -314,6 +314,7 @@ def test_liner_that_is_worn_through_is_told_with_its_place(finished, tmp_path):
 SHORT = {
     "start_up": {"most_s": 0.3},
     "sampling": {"fewest_blocks": 1, "most_blocks": 1},
+    "parts": FASTER,
 }  # start-up 2, pristine 1, wearing 2, worn 1
 THIN = 1e-5  # m, of the liner: an update is deeper
 

@@ -31,7 +31,7 @@ from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.config.run_checks import check_files
 from bulkwear.workflows.engine.solver import cycle_fault
 from tests.support.law_cases import LONG_SLIP, long_slip_registered
-from tests.support.own_machine_project import SETTINGS, machine_study
+from tests.support.own_machine_project import FASTER, SETTINGS, machine_study
 
 FILE = "config/studies/machine.yaml"
 TABLE = "config/designs/machine.csv"
@@ -41,6 +41,9 @@ FILLING = {"fraction": 0.2, "axis": "y", "centre_mm": [0, 0, -280], "radius_mm":
 ONLY_FILLED = {"inlet": None, "outlets": None, "filling": FILLING}
 SLICE = {"axis": "y", "low_mm": -50, "high_mm": 50}
 DOMAIN = {"low_mm": [-600, -300, -500], "high_mm": [600, 300, 300]}
+BLOCK_S = SETTINGS["sampling"]["block_s"]
+SWINGS = {"kind": "oscillation", "amplitude_mm": [0, 0, 1]}
+SLOW = {**TURNS, "speed_rpm": 1}
 LONG = "l" * 101
 
 
@@ -217,6 +220,20 @@ MOTIONS = [
             "20 time steps to the longest that the run may get",
         )
         for period in (0.002, 2)
+    ),
+    *(
+        (
+            motion(**SWINGS, period_s=BLOCK_S / swings),
+            f"sampling.block_s is {BLOCK_S}",
+            f"a whole number of swings of parts.plate, {BLOCK_S / swings:g} s each, within 5 % of the block, such as"
+            f" {max(round(swings), 1) * BLOCK_S / swings:.6g} s: the wear",
+        )
+        for swings in (0.115, 0.94, 1.4, 8.5)
+    ),
+    (
+        motion(**{**TURNS, "speed_rpm": 40}),
+        "parts.plate.motion.speed_rpm is 40",
+        "at least 44.44 rpm, a turn in the longest that the run may get, 1.35 s: wear would be counted in one attitude",
     ),
     (
         motion(**TURNS, start_s=0.4, ramp_s=0.1),
@@ -517,7 +534,7 @@ def test_a_drawing_that_is_not_there_is_named_with_its_part(tmp_path):
         {"filling": FILLING},
         {"periodic": SLICE},
         {"domain": DOMAIN},
-        {"updates": {"most": 0}, "wear": {"deform": False}},
+        {"updates": {"most": 0}, "wear": {"deform": False}, "parts": FASTER},
         {"operation": {"duration_h": None, "throughput_mt": 0.01}},
         {"operation": {"change_out_remaining_mm": None, "change_out_worn_mass_fraction": 0.3}},
         {"parts": {"liner": {"edge_mm": 30, "thickness_mm": 30}}},
@@ -535,6 +552,10 @@ def test_a_drawing_that_is_not_there_is_named_with_its_part(tmp_path):
             "outlets": {"below": None, "liner": SETTINGS["outlets"]["below"]},
         },
         *(motion(**given) for given in ({**TURNS, "ramp_s": 0.2}, {"kind": "belt", "velocity_m_per_s": [0, 1, 0]})),
+        *(motion(**SWINGS, period_s=BLOCK_S / swings) for swings in (1, 3, 0.96, 10.5)),
+        motion(**{**TURNS, "speed_rpm": 1, "stop_s": 0.4}),
+        {"parts": {"plate": {"role": "rigid", "law": None, "wear_coefficient_per_pa": None, "motion": SLOW}}},
+        {"parts": {"plate": {"motion": {**SLOW, "kind": "turning_surface"}}}},
     ],
 )
 def test_what_is_right_passes(tmp_path, changes):

@@ -40,8 +40,8 @@ MOTIONS = {
     "rest": None,
     "rotation": {"kind": "rotation", **TURN, "speed_rpm": 60, "start_s": 0.1, "ramp_s": 0.1, "stop_s": 9},
     "translation": {"kind": "translation", "velocity_m_per_s": [0, 0, -0.1]},
-    "oscillation": {"kind": "oscillation", "amplitude_mm": [5, 0, 0], "period_s": 0.1, "phase_deg": 90},
-    "swing": {"kind": "angular_oscillation", **TURN, "amplitude_deg": 10, "period_s": 0.2},
+    "oscillation": {"kind": "oscillation", "amplitude_mm": [5, 0, 0], "period_s": 0.05, "phase_deg": 90},
+    "swing": {"kind": "angular_oscillation", **TURN, "amplitude_deg": 2, "period_s": 0.05},
     "belt": {"kind": "belt", "velocity_m_per_s": [1, 0, 0]},
     "turning surface": {"kind": "turning_surface", **TURN, "speed_rpm": 60},
 }
@@ -276,7 +276,7 @@ def test_cells_of_neighbours_are_wide_where_particles_are_few(tmp_path):
 
 # ---------------------------------------------------------------- the solver runs them
 
-SHORT = {"sampling": {"block_s": 0.03}}
+SHORT = {"sampling": {"block_s": 0.05}, "start_up": {"most_s": 0.75}}  # s; the paddle turns once in the longest run
 MOVING = {
     name.replace(" ", "_"): {
         **{"file": "hood.stl", "unit": "mm", "role": "rigid", "edge_mm": 60, "material": "steel"},

@@ -9,7 +9,7 @@ from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.config.schema import case_schema, load_schema
 from bulkwear.workflows.engine.inputs import SIMULATED_FROM, run_digest, simulated_from, surface_from, why_again
 from bulkwear.workflows.engine.state import cycle_folder
-from tests.support.own_machine_project import machine_study
+from tests.support.own_machine_project import FASTER, machine_study
 
 SHORT = 40  # letters, of what Snakemake shows of a surface
 SHORTER = {"duration_h": 300}
@@ -40,7 +40,7 @@ def test_other_hours_are_another_simulation(tmp_path, before, operation):
 
 def test_hours_of_a_shape_that_is_kept_are_not(tmp_path):
     """Without updates nothing is simulated from them."""
-    kept = {"updates": {"most": 0}}
+    kept = {"updates": {"most": 0}, "parts": FASTER}
     assert digest(tmp_path / "a", **kept) == digest(tmp_path / "b", operation=SHORTER, **kept)
 
 

@@ -27,7 +27,7 @@ from bulkwear.workflows.report.products import (
 from bulkwear.workflows.report.sections import Pictures, Points, Text
 from bulkwear.workflows.report.text import simplifications
 from bulkwear.workflows.report.verdict import verdict, with_verdict
-from tests.support.own_machine_project import ORE, TINY, machine_study
+from tests.support.own_machine_project import FASTER, ORE, TINY, machine_study
 from tests.workflows.cases.equipment.synthetic import SyntheticPart, SyntheticRun, write_study
 
 ROWS = "row,inlet.rate_t_per_h\nslow,1.5\nfast,3\n"
@@ -205,7 +205,7 @@ def test_lifters_of_a_mill(finished):
 def test_shape_as_built_alone(finished):
     """Without updates nothing is told of a worn shape, and lives are by the rate as built."""
     given = {"updates": 0, "worn": 0}
-    with finished("row\nA\n", given, updates={"most": 0, "worn_blocks": 0}) as (study, folder):
+    with finished("row\nA\n", given, updates={"most": 0, "worn_blocks": 0}, parts=FASTER) as (study, folder):
         found = sections_of(study, folder)
     assert "The shape was kept as built" in found["The worn shape"]
     assert "That is by the rate as built" in found["Verdict"]
@@ -255,7 +255,7 @@ def test_laws_have_the_coefficients_of_their_parts():
 def test_nothing_is_said_of_caps_where_no_shape_was_worn(tmp_path):
     """There is no share of a volume that nothing was worn by."""
     kept = pd.DataFrame({"carried_volume_m3": [0.0], "worn_volume_m3": [0.0]})
-    with machine_study(tmp_path, updates={"most": 0}) as study:
+    with machine_study(tmp_path, updates={"most": 0}, parts=FASTER) as study:
         said = dict(simplifications(page_parameters(study), kept, page))
         assert "Capped steps" not in said and "The shape is kept as built." in said["Hours from seconds"]
         both = pd.concat([kept, kept.assign(carried_volume_m3=1.0, worn_volume_m3=4.0)])
@@ -274,7 +274,7 @@ def test_designs_of_different_settings_are_told_apart(tmp_path):
     """Bulk material, hours, updates and patches that are columns of the design are those of its rows."""
     rows = "row,bulk.material,operation.duration_h,updates.most,sampling.patch_mm\nA,,,,\nB,sand,800,0,70\n"
     machine = replace(TINY, materials={"particles": {"ore": ORE, "sand": ORE}})
-    with machine_study(tmp_path, rows, machine) as study:
+    with machine_study(tmp_path, rows, machine, parts=FASTER) as study:
         machines = {run.name: run.parameters for run in study.runs}
         said = dict(page.simplifications(page_parameters(study)))
     assert page_blocks.materials_words(machines) == "Ore in A and sand in B"
