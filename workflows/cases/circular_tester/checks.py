@@ -70,6 +70,24 @@ def sample_in_channel(run: CheckedRun) -> Fault | None:
     return "tester.channel_deg", f"at least {angle:.4g} degrees, twice the length of sample and consolidator"
 
 
+def consolidator_in_ring(run: CheckedRun) -> Fault | None:
+    """In a ring sample and consolidator take half of the way round, and the bed that leaves the flat is seen whole."""
+    tester, sample = run.parameters["tester"], run.parameters["sample"]
+    if tester["shape"] == CHANNEL:
+        return None
+    flat, most = tester["consolidator_flat_m"], tester["inner_radius_m"]
+    if flat > most:  # the level is looked at beyond a chord that far from the axis, see past_consolidator
+        reason = "so that the bed is there in all its width where its level is looked at behind it"
+        return "tester.consolidator_flat_mm", f"at most {millimetres(most)}, tester.inner_radius_mm, {reason}"
+    found, most = sample["length_m"] + tester["consolidator_ramp_m"] + flat, math.pi * mean_radius(tester)
+    if found <= most:
+        return None
+    return "tester.consolidator_ramp_mm", (
+        f"a length that makes at most {millimetres(most)}, half of the way round at the mean radius, with"
+        f" tester.consolidator_flat_mm and sample.length_mm, found {millimetres(found)}"
+    )
+
+
 def _ends(run: CheckedRun, above: float, below: float) -> tuple[float, float]:
     """Return the lowest and the highest point (m over its middle) of the inclined sample between two of its planes.
 
@@ -151,6 +169,7 @@ TESTER_CHECKS = (
     radii_in_order,
     sample_between_walls,
     sample_in_channel,
+    consolidator_in_ring,
     enough_layers_over,
     enough_layers_under,
     consolidator_on_bed,

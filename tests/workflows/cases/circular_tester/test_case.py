@@ -208,6 +208,25 @@ def test_a_tilt_takes_room_over_and_under_the_sample():
                 load_study("circular_tester", overrides=coarse | changes)
 
 
+@pytest.mark.parametrize("key", ["ramp", "flat"])
+def test_a_ring_has_room_for_its_consolidator(key):
+    """With the sample it takes half of the mean circumference, and the chord of its flat is no longer than the inner
+    radius; as much is allowed, the plate then stays clear of the sample and bed lies where the level is looked at.
+    """
+    tester, sample = (tiny_tester(tester={"shape": "ring"}).settings[name] for name in ("tester", "sample"))
+    mean = 0.5 * (tester["inner_radius_mm"] + tester["outer_radius_mm"])
+    half = math.pi * mean - sample["length_mm"] - tester["consolidator_flat_mm"]
+    most = {"ramp": half, "flat": tester["inner_radius_mm"]}[key]
+    allowed = {"ramp": f"a length that makes at most {math.pi * mean:.6g} mm", "flat": f"at most {most:.6g} mm"}[key]
+    with pytest.raises(ConfigError, match=rf"tester\.consolidator_{key}_mm is .* for row plain, allowed is {allowed}"):
+        tiny_tester(tester={"shape": "ring", f"consolidator_{key}_mm": 1.01 * most})
+    bed = next(iter(tiny_tester(tester={"shape": "ring", f"consolidator_{key}_mm": 0.99 * most}).beds.values()))
+    x, y, _ = tester_deck.consolidator_mesh(bed).points.T
+    from_sample = np.abs(np.arctan2(y, x + 1e-3 * mean)).min() * 1e-3 * mean
+    assert from_sample > 0.5e-3 * sample["length_mm"]
+    assert tester_deck.past_consolidator(bed)[3] > -bed["inner_radius_m"]
+
+
 def test_a_ring_has_less_room_for_corners():
     """The outer corners of a sample are farther out than its side."""
     with pytest.raises(ConfigError, match=r"sample.width_mm is 40 .* allowed is at most 37"):
