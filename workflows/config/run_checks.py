@@ -32,6 +32,12 @@ Fault = tuple[str, str]  # key at fault (empty: the row as a whole) and what is 
 CONTACT_MODEL = "_shared/contact_model"  # template
 MOST_STEPS = 2**31 - 1  # of a run of LIGGGHTS, a small integer of its
 LEAST_GAP = 0.18  # between shapes, in elements: a triangle across it has the angle that a mesh promises, tan 10 degrees
+# Names that pandas reads as no value, and those that it reads as a truth value or a number, in any case of letters.
+NO_VALUES = (
+    *("#N/A", "#N/A N/A", "#NA", "-1.#IND", "-1.#QNAN", "-NaN", "-nan", "1.#IND", "1.#QNAN", "<NA>", "N/A", "NA"),
+    *("NULL", "NaN", "None", "n/a", "nan", "null"),
+)
+OTHER_VALUES = ("true", "false", "inf", "infinity")
 SAMPLE_ELEMENTS = 4  # elements along the shorter side of a sample; fewer give no map
 
 
@@ -222,6 +228,16 @@ def pattern_fits(run: CheckedRun) -> Fault | None:
     return None if fault is None else ("", fault)
 
 
+def names_stay_names(run: CheckedRun) -> Fault | None:
+    """No row or part has a name that tables are read with as no value, as a truth value or as a number."""
+    named = {"row": run.row.values["row"]} | {f"parts.{name}": name for name in run.settings.get("parts", {})}
+    for key, name in named.items():
+        if name in NO_VALUES or name.casefold() in OTHER_VALUES:
+            taken = "no value" if name in NO_VALUES else "a truth value or a number"
+            return key, f"another name: in a table '{name}' is taken for {taken}"
+    return None
+
+
 def thickness_known(run: CheckedRun) -> Fault | None:
     """What happens where a part is worn through can only be said where its thickness is known: given, or of parts, each
     of which has its own.
@@ -240,5 +256,5 @@ def steps_countable(run: CheckedRun) -> Fault | None:
     return "", f"{steps:.4g} time steps, allowed are at most {MOST_STEPS}, which the solver counts"
 
 
-COMMON_CHECKS: tuple[Check, ...] = (model_properties_given, thickness_known)
+COMMON_CHECKS: tuple[Check, ...] = (names_stay_names, model_properties_given, thickness_known)
 LAST_CHECKS: tuple[Check, ...] = (steps_countable,)  # after those of the case, which say more of what they know
