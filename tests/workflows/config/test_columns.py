@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from bulkwear.workflows.config.columns import as_settings, row_overrides, with_row
@@ -20,7 +22,7 @@ def message_of(folder, rows, **changes) -> str:
 def test_any_setting_that_is_one_number_or_word_may_be_a_column(tmp_path):
     """Numbers, words and settings of a named part change from row to row; an empty cell leaves the study's."""
     header = "row,parts.liner.edge_mm,inlet.rate_t_per_h,parts.plate.material,parts.paddle.motion.speed_rpm"
-    rows = f"{header}\nA,20,1.2,perspex,30\nB,,,,\n"
+    rows = f"{header}\nA,20,1.2,perspex,90\nB,,,,\n"
     with machine_study(tmp_path, rows, parts={"liner": {"edge_mm": 10}}) as study:
         own, as_written = (study.run(name).parameters for name in "AB")
     assert own["parts"][0]["edge_m"] == 0.02
@@ -28,7 +30,7 @@ def test_any_setting_that_is_one_number_or_word_may_be_a_column(tmp_path):
     assert own["inlet"]["rate_kg_per_s"] == pytest.approx(1200 / 3600)
     assert as_written["inlet"]["rate_kg_per_s"] == pytest.approx(1500 / 3600)
     assert [own["parts"][1][key] for key in ("material", "type")] == ["perspex", 3]
-    assert own["parts"][2]["motion"]["speed_rad_per_s"] == pytest.approx(3.14159265)
+    assert own["parts"][2]["motion"]["speed_rad_per_s"] == pytest.approx(90 * 2.0 * math.pi / 60.0)
 
 
 def test_a_key_may_be_given_by_rows_alone(tmp_path):
