@@ -60,7 +60,7 @@ def test_every_number_has_a_range(name):
         for path, inner in leaves(schema):
             if inner.get("type") not in ("number", "integer"):
                 continue
-            assert "minimum" in inner, path
+            assert "minimum" in inner or "exclusiveMinimum" in inner, path
             assert "maximum" in inner or "exclusiveMaximum" in inner, path
-            if inner["minimum"] in LEAST.values() and inner["type"] == "number":
+            if inner.get("minimum") in LEAST.values() and inner["type"] == "number":
                 assert inner["minimum"] > 0.0
