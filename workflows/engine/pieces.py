@@ -3,6 +3,7 @@
 A piece is a start of the solver on the cycle's one deck, told where to begin and to stop; the last one ends the cycle.
 Most cycles are one piece, which is told nothing.
 They are the same pieces whether a run is killed or not: a run that is taken up within a cycle is the undisturbed one.
+Where the interval of the pieces was changed meanwhile, it goes on from the newest one.
 What is finished stands in `pieces.json`. It, the logs of the pieces and the newest restart file stay until the
 cycle is accounted and its state written, so that a fault on the way there costs no simulation.
 """
@@ -62,14 +63,14 @@ def simulate_in_pieces(
     done = finished_pieces(folder, origin)
     for forced in folder.glob(FORCED):
         forced.unlink()
-    for end in ends[len(done) :]:
+    for end in [end for end in ends if not done or end > done[-1].end]:
         before = processor_seconds()
-        wall = run(_variables(done, end) if len(ends) > 1 else {})
+        wall = run(_variables(done, end) if done or len(ends) > 1 else {})
         check_end(folder, end)
         check_restart(folder / (RESTART if end == ends[-1] else CHECKPOINT))
         done.append(Piece(end, wall, processor_seconds() - before))
         _keep(folder, origin, done)
-    _join(folder, len(ends))
+    _join(folder, len(done))
     return done
 
 
@@ -80,10 +81,10 @@ def finished_pieces(folder: Path, origin: str) -> list[Piece]:
     try:
         found = read_record(folder / PIECES)
         pieces = [Piece(**piece) for piece in found["pieces"]] if found["origin"] == origin else []
-    except (OSError, RecordError, KeyError, TypeError):
+        left = all(file_digest(folder / name) == digest for name, digest in found["left"].items())
+    except (OSError, RecordError, KeyError, TypeError, AttributeError):
         return []
-    checkpoint, digest = folder / _checkpoint(len(pieces)), found.get("checkpoint")
-    return pieces if not digest or (checkpoint.is_file() and file_digest(checkpoint) == digest) else []
+    return pieces if left else []
 
 
 def check_end(folder: Path, end: int) -> None:
@@ -113,9 +114,9 @@ def _keep(folder: Path, origin: str, done: list[Piece]) -> None:
         os.replace(folder / name, _of_piece(folder, name, count))
     if (folder / CHECKPOINT).exists():  # the last piece leaves none, but the restart file of the cycle
         os.replace(folder / CHECKPOINT, folder / _checkpoint(count))
-    kept = folder / _checkpoint(count)
-    digest = {"checkpoint": file_digest(kept)} if kept.exists() else {}
-    write_record(folder / PIECES, {"origin": origin, "pieces": [asdict(piece) for piece in done], **digest})
+    restarts = [path for path in (folder / _checkpoint(count), folder / RESTART) if path.exists()]
+    left = {path.name: file_digest(path) for path in restarts[:1]}
+    write_record(folder / PIECES, {"origin": origin, "pieces": [asdict(piece) for piece in done], "left": left})
     for earlier in folder.glob("checkpoint_*.restart"):
         if earlier.name != _checkpoint(count):
             earlier.unlink()

@@ -1,12 +1,13 @@
 """How many ranks of the solver a job starts."""
 
-from bulkwear.workflows.engine.solver import ranks_here
+import os
 
 
 def ranks_to_start(tasks: int, threads: int, submitted: int) -> int:
-    """Return the ranks that a job starts. Where Snakemake was called within an allocation (salloc, sbatch) they are no
-    more than the cores that it gives the job, though Slurm's variables are there.
+    """Return the ranks that a job starts: its tasks where it is a job of Slurm's, else no more than the cores it was
+    given. Where Snakemake was called within an allocation (salloc, sbatch) Slurm's variables are there, and its jobs
+    are none of Slurm's.
 
     submitted: 1 where a cluster's job runs Snakemake, 0 where it was called
     """
-    return ranks_here(tasks, threads) if submitted else min(tasks, threads)
+    return tasks if submitted and "SLURM_JOB_ID" in os.environ else min(tasks, threads)

@@ -171,11 +171,6 @@ def solver_command(
     return deck if ranks == 1 else [*shlex.split(launcher), "-n", str(ranks), *deck]
 
 
-def ranks_here(tasks: int, threads: int) -> int:
-    """Return the ranks that a job starts: its tasks within a Slurm job, else no more than the cores it was given."""
-    return tasks if "SLURM_JOB_ID" in os.environ else min(tasks, threads)
-
-
 def solver_environment(ranks: int = 1, by_slurm: bool = False) -> dict[str, str]:
     """Return the environment of the solver; Open MPI refuses to run as root unless told twice.
 

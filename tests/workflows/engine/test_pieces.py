@@ -1,11 +1,13 @@
 """A simulation in pieces: where they end, and that a killed one goes on where its newest whole piece ended."""
 
+from contextlib import suppress
 from functools import partial
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bulkwear.workflows.engine.chain import RESTART
 from bulkwear.workflows.engine.pieces import (
     CHECKPOINT,
     PIECES,
@@ -80,7 +82,15 @@ def test_pieces_of_another_start_do_not_count(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", ["", '{"origin": "inp', "[]", '{"origin": "inputs"}', '{"origin": "inputs", "pieces": [{}]}']
+    "text",
+    [
+        "",
+        '{"origin": "inp',
+        "[]",
+        '{"origin": "inputs"}',
+        '{"origin": "inputs", "pieces": [{}]}',
+        '{"origin": "inputs", "pieces": [], "left": 1}',
+    ],
 )
 def test_a_torn_list_of_pieces_is_none(tmp_path, text):
     """A list that a full disk or a lost machine left unfinished counts no piece and stops no run."""
@@ -118,6 +128,34 @@ def test_a_solver_that_was_asked_to_end_has_finished_no_piece(tmp_path):
     checked_pieces(tmp_path, "inputs", [40], OnePiece(tmp_path))
     forget_pieces(tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {LOG, SCREEN}
+
+
+@pytest.mark.parametrize("ends", [[340], [150, 340], [100, 200, 250, 300, 340], [310, 340]])
+def test_a_changed_interval_goes_on_from_the_newest_piece(tmp_path, ends):
+    """Killed after 200 steps and started again with pieces of another length: what is done is not simulated again, and
+    the log is whole."""
+    with pytest.raises(SolverError):
+        checked_pieces(tmp_path, "inputs", ENDS, Solver(tmp_path, 300))
+    solver, missing = Solver(tmp_path), [end for end in ends if end > 200]
+    done = checked_pieces(tmp_path, "inputs", ends, solver)
+    assert [variables["stop"] for variables in solver.calls] == [str(end) for end in missing]
+    assert [variables["begin_step"] for variables in solver.calls] == [str(end) for end in [200, *missing[:-1]]]
+    assert [piece.end for piece in done] == [100, 200, *missing]
+    begins = [line for line in (tmp_path / LOG).read_text().splitlines() if line.endswith("to")]
+    assert begins == [f"{begin} to" for begin in [0, 100, 200, *missing[:-1]]]
+
+
+def test_a_restart_file_that_changed_counts_no_piece(tmp_path):
+    """Of a piece within the cycle, and of the last one while the cycle is not accounted."""
+    for name, fails_at in (("checkpoint_2.restart", 300), (RESTART, None)):
+        folder = tmp_path / name
+        folder.mkdir()
+        with suppress(SolverError):
+            (folder / RESTART).write_text("of the cycle")
+            checked_pieces(folder, "inputs", ENDS, Solver(folder, fails_at))
+        assert finished_pieces(folder, "inputs")
+        (folder / name).write_text("a flipped bit")
+        assert finished_pieces(folder, "inputs") == []
 
 
 def test_a_piece_whose_restart_file_is_not_whole_is_not_finished(tmp_path):

@@ -12,19 +12,10 @@ import pytest
 
 from bulkwear.workflows.engine import disk, solver
 from bulkwear.workflows.engine.patience import LONGEST_LOOK_S, STOP_TIMES, Patience, Watch, patience_of
-from bulkwear.workflows.engine.solver import SolverError, exit_words, ranks_here, run_deck
+from bulkwear.workflows.engine.solver import SolverError, exit_words, run_deck
 
 Usage = namedtuple("Usage", "total used free")
 MINUTE = 60.0
-
-
-def test_ranks_are_no_more_than_the_cores_of_this_machine(monkeypatch):
-    """Four ranks asked for on two cores are two; a Slurm job has its tasks, whatever cores Snakemake counts."""
-    monkeypatch.delenv("SLURM_JOB_ID", raising=False)
-    assert ranks_here(4, 2) == 2
-    assert ranks_here(1, 2) == 1
-    monkeypatch.setenv("SLURM_JOB_ID", "7")
-    assert ranks_here(4, 2) == 4
 
 
 def program(folder: Path, text: str) -> str:
