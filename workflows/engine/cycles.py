@@ -331,6 +331,7 @@ def fill_bed(
     progress, code = Progress(name, total), simulating_code(case)
     with state.only_driver(folder, progress.say):
         write_bed(case, bed, folder)
+        (folder / BED_RESTART).unlink(missing_ok=True)  # of an earlier filling: it would count as this one's
         before = processor_seconds()
         program = executable_of(bed)
         seconds = run_deck(

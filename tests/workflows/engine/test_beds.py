@@ -5,7 +5,10 @@ import math
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.engine.beds import MEASURES, BedMeasure, bed_fault, level_measure, mass_measure, write_measures
+from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError
+from tests.support.tiny import tiny_study
 
 MASS, LEVEL = BedMeasure("mass", "kg", 20.5, 20.4, 0.2), BedMeasure("level", "m", 0.15, 0.131, 0.008)
 
@@ -55,3 +58,20 @@ def test_depth_is_what_lies_over_something():
     depth = level_measure(GRAIN, 0.15, 0.13, "depth", covering=0.06)
     assert (depth.measure, depth.asked, depth.found) == ("depth", pytest.approx(0.09), pytest.approx(0.07))
     assert depth.missed
+
+
+def test_the_restart_file_of_an_earlier_filling_does_not_count(tmp_path, monkeypatch):
+    """A solver that is asked to end ends without a fault and without a bed; what was there before is none."""
+    study = tiny_study()
+    name, bed = next(iter(study.beds.items()))
+    (tmp_path / cycles.BED_RESTART).write_bytes(b"of an earlier filling")
+
+    def asked_to_end(folder, *given, **named):
+        for file in (LOG, SCREEN):
+            (folder / file).write_text("Step Atoms KinEng\n0 1 0.0\n39 1 0.0\n")
+        return 1.0
+
+    monkeypatch.setattr(cycles, "run_deck", asked_to_end)
+    with pytest.raises(SolverError, match=r"screen\.txt: LIGGGHTS ended at step 39 without bed\.restart; start again"):
+        cycles.fill_bed(study.case, name, bed, tmp_path)
+    assert not (tmp_path / cycles.BED_RESTART).exists()
