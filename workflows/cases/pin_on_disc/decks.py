@@ -37,10 +37,16 @@ def pin_set_down(run: Parameters) -> dict[str, Any]:
         "pin_radius_m": radius,
         "pin_height_m": radius,
         "density_kg_per_m3": run["particle"]["density_kg_per_m3"],
-        "domain_half_width_m": run["disc"]["track_radius_m"] + PIN_RADII_BESIDE_TRACK * radius,
+        "domain_half_width_m": domain_half_width(run),
         "domain_bottom_m": -radius,
         "domain_top_m": PIN_RADII_BESIDE_TRACK * radius,
     }
+
+
+def domain_half_width(run: Parameters) -> float:
+    """Return half the domain's width (m): room beside the track, and the disc, whose elements may reach its rim."""
+    radius, disc = run["pin"]["radius_m"], run["disc"]
+    return max(disc["track_radius_m"] + PIN_RADII_BESIDE_TRACK * radius, disc["radius_m"] + radius)
 
 
 def pin_on_disc(run: Parameters, span: Span, restart: str) -> dict[str, Any]:

@@ -11,7 +11,7 @@ import pytest
 
 from bulkwear.postproc.mesh import read_surface, write_surface
 from bulkwear.workflows.cases.pin_on_disc.case import LOAD_TOLERANCE
-from bulkwear.workflows.cases.pin_on_disc.decks import pin_on_disc
+from bulkwear.workflows.cases.pin_on_disc.decks import pin_on_disc, pin_set_down
 from bulkwear.workflows.cases.pin_on_disc.page import update_remark
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.layers import ConfigError
@@ -75,6 +75,20 @@ def test_the_time_step_is_the_sources():
     assert derived["first_cycle_steps"] % derived["force_interval_steps"] == 0
     assert derived["overlap_m"] == pytest.approx(40.8e-6, rel=0.01)
     assert 12 * derived["first_cycle_steps"] * derived["time_step_s"] == pytest.approx(2.0, rel=ROUND_OFF)
+
+
+@pytest.mark.parametrize("element", [0.2, 8.0])
+def test_every_stretch_of_the_disc_lies_in_the_domain(element):
+    """Elements of a rigid disc may be as large as its rim is far: what the solver gets lies inside, in every cycle."""
+    disc = {"radius_mm": 20, "track_radius_mm": 12, "element_size_mm": element}
+    study = tiny_pin(disc=disc, wear={"deform": False})
+    parameters, case = study.run(ROW).parameters, study.case
+    surface, deck = case.surface_mesh(parameters), pin_set_down(parameters)
+    for span in (None, *known_spans(parameters)):
+        mesh = case.pieces(parameters, span, surface)[0].mesh
+        there = mesh.points[np.unique(mesh.triangles)]
+        assert np.abs(there[:, :2]).max() < deck["domain_half_width_m"]
+        assert deck["domain_bottom_m"] < there[:, 2].min() and there[:, 2].max() < deck["domain_top_m"]
 
 
 def test_the_per_triangle_rule_has_no_patch():
