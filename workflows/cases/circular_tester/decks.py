@@ -40,7 +40,11 @@ CHANNEL, RING = "channel", "ring"  # values of tester.shape
 BLOCK, CONSOLIDATOR, TROUGH = "block.stl", "consolidator.stl", "trough.stl"
 FALLS = 2.5  # -, times sqrt(2 h/g): settling of poured particles, as for beds that are lowered
 HOLDER_SIZE = 0.01  # m, elements of sides and bottom of the sample, which do not wear
-WALL_GAP = 2e-3  # m, between the consolidator and the side walls: less than a particle
+WALL_GAP = 2e-3  # m, between the consolidator and the side walls, where all particles are larger
+WALL_GAP_DIAMETERS = 0.5  # -, the same in smallest diameters where some are not: they would pass beside the plate
+BLOCK_ELEMENTS = 4.0  # -, of the block's longer side
+# -, elements of the block over its shorter side, at most: corners of 11 degrees; triangles below 10 are not meshed.
+BLOCK_ASPECT = 5.0
 TROUGH_ELEMENT = 0.05  # m, chords of the trough; at the outer wall they lie 0.6 mm inside the circle
 FREEBOARD = 1.0  # -, height of the trough's walls over the bed, in bed heights
 LOWERING_TIME = 0.5  # s, in which the consolidator comes down on the turning bed, with about 0.1 m/s
@@ -239,19 +243,26 @@ def block_mesh(bed: Parameters) -> SurfaceMesh:
 
 @cache  # a deck asks for it many times, and a forecast for the decks of all beds
 def _level_block(width: float, length: float, thickness: float) -> SurfaceMesh:
-    return sample_block(width, length, thickness, max(width, length) / 4.0, None)
+    element = min(max(width, length) / BLOCK_ELEMENTS, BLOCK_ASPECT * min(width, length))
+    return sample_block(width, length, thickness, element, None)
+
+
+def wall_gap(bed: Parameters) -> float:
+    """Return the gap (m) between consolidator and side walls: no particle passes there."""
+    smallest = min(bed["particle"]["diameters_m"])
+    return WALL_GAP if smallest > WALL_GAP else WALL_GAP_DIAMETERS * smallest
 
 
 def consolidator_mesh(bed: Parameters) -> SurfaceMesh:
     """Return the plate that levels the bed once per round, half a round away from the sample."""
     level, rise = bed["consolidator_level_m"] + floor(bed), bed["consolidator_rise_m"]
-    ramp, flat = bed["consolidator_ramp_m"], bed["consolidator_flat_m"]
+    ramp, flat, gap = bed["consolidator_ramp_m"], bed["consolidator_flat_m"], wall_gap(bed)
     if bed["shape"] == CHANNEL:
         end = 0.5 * channel_length(bed) - WALL_GAP
-        return straight_consolidator(half_width(bed) - WALL_GAP, level, rise, end - flat - ramp, end - flat, end)
+        return straight_consolidator(half_width(bed) - gap, level, rise, end - flat - ramp, end - flat, end)
     mean = mean_radius(bed)
     angles = (math.pi - ramp / mean, math.pi, math.pi + flat / mean)
-    radii = bed["inner_radius_m"] + WALL_GAP, bed["outer_radius_m"] - WALL_GAP
+    radii = bed["inner_radius_m"] + gap, bed["outer_radius_m"] - gap
     plate = consolidator(*radii, bed["consolidator_level_m"], rise, *angles, TROUGH_ELEMENT)
     return placed(plate, np.eye(3), np.array([-mean, 0.0, floor(bed)]))
 

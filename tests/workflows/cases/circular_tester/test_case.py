@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bulkwear.meshes.tester import placed
-from bulkwear.postproc.mesh import area_vectors, edge_lengths_per_triangle
+from bulkwear.postproc.mesh import area_vectors, edge_lengths_per_triangle, enclosed_volume
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester.work import surface_triangles
 from bulkwear.workflows.config.design import ConfigError, load_study
@@ -96,6 +96,38 @@ def test_everything_lies_in_the_domain(shape):
     there = study.case.pieces(parameters, None, sample)[0].mesh
     assert there.points[:, 2].max() < meshes["block"].points[:, 2].max()
     assert np.linalg.norm(there.points.mean(axis=0) - meshes["block"].points.mean(axis=0)) < bed["headroom_m"]
+
+
+@pytest.mark.parametrize("shape", ["channel", "ring"])
+def test_no_particle_passes_beside_the_consolidator(shape):
+    """The gap to the walls is 2 mm, below the diameter of any particle; of finer ones it is half the smallest, so that
+    the plate of a narrow trough is wider than its sample too.
+    """
+    bed = tiny_tester(tester={"shape": shape}).beds["bed_plain"]
+    fine = [0.0006, 0.0008]
+    narrow = bed | {
+        "inner_radius_m": 0.0958,
+        "outer_radius_m": 0.1042,  # 1.7 mm on either side of a sample of 5 mm: two of the largest particles
+        "sample_width_m": 0.005,
+        "particle": bed["particle"] | {"diameters_m": fine},
+    }
+    for asked, gap in ((bed, 0.002), (narrow, 0.0003)):
+        x, y, _ = tester_deck.consolidator_mesh(asked).points.T
+        mean = tester_deck.mean_radius(asked)
+        across = np.abs(x if shape == "channel" else np.hypot(x + mean, y) - mean)
+        assert tester_deck.half_width(asked) - across.max() == pytest.approx(gap, abs=ROUND_OFF)
+        assert gap < min(asked["particle"]["diameters_m"]) and across.max() > 0.5 * asked["sample_width_m"]
+
+
+@pytest.mark.parametrize(("width", "length"), [(5, 100), (5, 150), (5, 2000), (2000, 5), (100, 100)])
+def test_a_narrow_sample_has_its_block(width, length):
+    """The block is as wide and long as the sample, whatever their ratio, and closed."""
+    bed = tiny_tester().beds["bed_plain"]
+    asked = bed | {"sample_width_m": 1e-3 * width, "sample_length_m": 1e-3 * length, "incline_rad": 0.0}
+    block = tester_deck.block_mesh(asked)
+    size = block.points.max(axis=0) - block.points.min(axis=0)
+    assert size[:2] == pytest.approx([1e-3 * width, 1e-3 * length], rel=ROUND_OFF)
+    assert enclosed_volume(block.points, block.triangles) == pytest.approx(np.prod(size), rel=ROUND_OFF)
 
 
 def test_the_sample_faces_the_flow():
