@@ -8,7 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from bulkwear.workflows.cases.equipment.motions import FREE, NEEDED, frame_turns, motion_faults, motion_of, turn_s
+from bulkwear.workflows.cases.equipment.motions import (
+    FREE,
+    NEEDED,
+    frame_turns,
+    full_speed_s,
+    motion_faults,
+    motion_of,
+    stands_s,
+    turn_s,
+)
 from bulkwear.workflows.cases.equipment.parameters import most_blocks
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault
 from bulkwear.workflows.config.units import to_si
@@ -54,7 +63,7 @@ def motions_move(run: CheckedRun) -> Fault | None:
             many = "numbers that are not all 0" if still in DIRECTIONS else "a number other than 0"
             slow = " or nearly" if given[still] else ""
             return f"{key}.{WRITTEN.get(still, still)}", f"{many}{slow}, or a part without motion"
-        full = motion.get("start_s", 0.0) + motion.get("ramp_s", 0.0)
+        full = full_speed_s(motion)
         if bound := _allowed_stop(run.parameters, motion, full):
             return f"{key}.stop_s", bound
         if full > start_up:
@@ -74,7 +83,7 @@ def _allowed_stop(parameters: Mapping[str, Any], motion: Mapping[str, Any], full
     if stop < full or not stop:
         return f"at least {full:g} s, start_s and ramp_s together" if full else "above 0 s: the part would never move"
     longest = _longest_s(parameters)
-    if stop + motion.get("ramp_s", 0.0) <= start_up or stop >= longest:
+    if stands_s(motion) <= start_up or stop >= longest:
         return None
     with_ramp = ", less ramp_s" if "ramp_s" in motion else ""
     return (

@@ -83,3 +83,19 @@ def turn_s(given: Mapping[str, Any] | None) -> float:
         return 0.0
     speed = abs(given.get("speed_rad_per_s", 0.0))
     return 2.0 * math.pi / speed if speed else given.get("period_s", 0.0)
+
+
+def full_speed_s(given: Mapping[str, Any]) -> float:
+    """Return when (s) a motion has its full speed."""
+    return given.get("start_s", 0.0) + given.get("ramp_s", 0.0)
+
+
+def stands_s(given: Mapping[str, Any]) -> float:
+    """Return from when on (s) a part stands for good, infinite where it goes on."""
+    return given.get("stop_s", math.inf) + given.get("ramp_s", 0.0)
+
+
+def last_change_s(given: Mapping[str, Any], start_up_s: float) -> float:
+    """Return when (s) a motion last changes its pace in a start-up as long as may be: it stands, or has full speed."""
+    stands = stands_s(given)
+    return stands if stands <= start_up_s else full_speed_s(given)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from bulkwear.workflows.cases.equipment.motions import last_change_s
 from bulkwear.workflows.cases.equipment.parameters import start_up_blocks
 from bulkwear.workflows.engine.schedule import Span
 
@@ -42,7 +43,7 @@ def _next_phase(run: Parameters, spans: Sequence[Span], row: Mapping[str, float]
     phase, updates = phase_of(spans[-1]), run["updates"]
     count = sum(phase_of(span) == phase for span in spans)
     if phase == START_UP:
-        steady = row["steady"] and _began_at_full_speed(run, spans[-1])
+        steady = row["steady"] and _began_as_it_goes_on(run, spans[-1])
         return PRISTINE if steady or count + 1 >= start_up_blocks(run) else START_UP
     if phase == PRISTINE and not _sampled(run, count, row["deciding_width"]):
         return PRISTINE
@@ -54,12 +55,14 @@ def _next_phase(run: Parameters, spans: Sequence[Span], row: Mapping[str, float]
     return WORN if worn < updates["worn_blocks"] else None
 
 
-def _began_at_full_speed(run: Parameters, span: Span) -> bool:
-    """Return whether every part had its full speed when a block began: before, a machine may rest steadily."""
+def _began_as_it_goes_on(run: Parameters, span: Span) -> bool:
+    """Return whether every part had its full speed when a block began, and stood if it stops in the start-up: before, a
+    machine may rest steadily, or work as it does not while wear is counted.
+    """
     motions = [part["motion"] for part in run["parts"] if part["motion"]]
-    full = max((motion.get("start_s", 0.0) + motion.get("ramp_s", 0.0) for motion in motions), default=0.0)
+    last = max((last_change_s(motion, run["start_up"]["most_s"]) for motion in motions), default=0.0)
     derived = run["derived"]
-    return (derived["first_cycle_steps"] + span.first_step) * derived["time_step_s"] >= full
+    return (derived["first_cycle_steps"] + span.first_step) * derived["time_step_s"] >= last
 
 
 def _sampled(run: Parameters, blocks: int, width: float) -> bool:

@@ -61,6 +61,23 @@ def test_start_up_does_not_end_before_parts_have_their_speed():
         assert count(found, "start_up") == blocks
 
 
+@pytest.mark.parametrize(
+    ("motion", "blocks"),
+    [
+        ({"stop_s": 0.7}, 4),
+        ({"stop_s": 0.5, "ramp_s": 0.2}, 4),
+        ({"start_s": 0.1, "stop_s": 0.1}, 1),
+        ({"stop_s": 2.0}, 9),
+        ({"ramp_s": 0.5, "stop_s": 1.7}, 3),
+    ],
+)
+def test_start_up_does_not_end_before_parts_stand(motion, blocks):
+    """A part that stops within the longest start-up of 2 s stands when wear is counted, its ramp down included. One
+    that stops later, as the last one does with its ramp, goes on for all of the run.
+    """
+    assert count(phases(run_of(start_up=2.0, motion=motion)), "start_up") == blocks
+
+
 def test_start_up_ends_with_its_longest_time():
     """One second is five blocks of 0.2 s: the first one, and four that leave a row."""
     assert count(phases(run_of(start_up=1.0), lambda span: UNSTEADY), "start_up") == 4
