@@ -25,6 +25,7 @@ from bulkwear.postproc.wear.kernel_sums import columns_of_law
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.part_loads import part_loads
 from bulkwear.postproc.wear.thickness import LOCAL_THICKNESS, with_thickness
+from bulkwear.workflows.cases.equipment.life import allowed_depths
 from bulkwear.workflows.cases.equipment.motions import axis_point
 from bulkwear.workflows.cases.equipment.parameters import law_values, sums_of
 from bulkwear.workflows.cases.equipment.phases import phase_of
@@ -162,10 +163,11 @@ def patch_tables(folder: Path, last: int, phases: tuple[str, ...] = ()) -> list[
 
 
 def urgency(run: Parameters, table: pd.DataFrame) -> np.ndarray:
-    """Return recession over the depth that each patch may lose (1/h), by which places are ordered; over 1 m where its
-    thickness is not known.
+    """Return recession over the depth that each patch may lose (1/h), by which places are ordered; over 1 m where that
+    is not known, or nothing.
     """
-    return (table["recession_m_per_h"] / table["thickness_m"].fillna(1.0)).to_numpy()
+    allowed = allowed_depths(table["thickness_m"].to_numpy(), run["operation"])
+    return table["recession_m_per_h"].to_numpy() / np.where(np.isfinite(allowed), allowed, 1.0)
 
 
 def deciding_width(run: Parameters, tables: list[pd.DataFrame]) -> float:

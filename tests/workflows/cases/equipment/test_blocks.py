@@ -218,20 +218,44 @@ def tables_of(rates, thickness=(0.01, 0.03, np.nan), edge=0.02):
     ]
 
 
-def test_urgency_is_recession_over_thickness(machine):
-    """Where the thickness is not known, a metre stands for it."""
+def ruled(machine, **rule):
+    """The run of the machine with a rule of change-out."""
+    return {**machine.run, "operation": rule}
+
+
+@pytest.mark.parametrize(
+    ("rule", "depths_m"),
+    [
+        ({}, (0.01, 0.03, 1.0)),
+        ({"change_out_remaining_m": 0.008}, (0.002, 0.022, 1.0)),
+        ({"change_out_remaining_m": 0.02}, (1.0, 0.01, 1.0)),
+        ({"change_out_remaining_fraction": 0.5}, (0.005, 0.015, 1.0)),
+        ({"change_out_worn_mass_fraction": 0.5}, (0.01, 0.03, 1.0)),
+    ],
+)
+def test_urgency_is_recession_over_the_depth_that_may_be_lost(machine, rule, depths_m):
+    """A metre stands for it where the thickness is not known, or no more than what shall remain."""
     (table,) = tables_of([[1e-5, 6e-5, 1e-3]])
-    np.testing.assert_allclose(blocks.urgency(machine.run, table), [1e-3, 2e-3, 1e-3], rtol=ROUND_OFF)
+    expected = np.array([1e-5, 6e-5, 1e-3]) / depths_m
+    np.testing.assert_allclose(blocks.urgency(ruled(machine, **rule), table), expected, rtol=ROUND_OFF)
+
+
+def test_the_place_that_is_changed_first_decides(machine):
+    """Of 10 mm with 8 to remain before of 30 mm, though it wears more slowly over its thickness."""
+    steady, scattered = np.full(5, 1.0), np.array([5.0, 7.0, 6.0, 6.5, 5.5])
+    tables = tables_of(np.column_stack([steady, scattered, steady]) * 1e-5)
+    assert blocks.deciding_width(ruled(machine), tables) > 0.0
+    assert blocks.deciding_width(ruled(machine, change_out_remaining_m=0.008), tables) == 0.0
 
 
 def test_deciding_width_is_that_of_the_place_that_goes_first(machine):
     """Student's interval of the series of the most urgent place, whole, over its mean."""
-    series = np.array([5.0, 7.0, 6.0, 6.5, 5.5])
+    run, series = ruled(machine), np.array([5.0, 7.0, 6.0, 6.5, 5.5])
     rates = np.column_stack([np.full(5, 1.0), series, np.full(5, 90.0)]) * 1e-5
     expected = 2.0 * students_t(0.975, 4) * error_of_mean(series) / series.mean()
-    assert blocks.deciding_width(machine.run, tables_of(rates)) == pytest.approx(expected, rel=ROUND_OFF)
+    assert blocks.deciding_width(run, tables_of(rates)) == pytest.approx(expected, rel=ROUND_OFF)
     thin = tables_of(rates, thickness=(0.001, 0.03, np.nan))
-    assert blocks.deciding_width(machine.run, thin) == 0.0  # the first place goes first, and does not scatter
+    assert blocks.deciding_width(run, thin) == 0.0  # the first place goes first, and does not scatter
 
 
 @pytest.mark.parametrize("rates", [[[1e-5] * 3] * 2, [[0.0] * 3] * 5, []], ids=["two blocks", "no wear", "no block"])
