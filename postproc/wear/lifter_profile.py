@@ -19,6 +19,7 @@ import numpy as np
 PLANES = 15  # along the axis
 ANGLES = 36_000  # of a turn: 0.4 mm apart in a mill of 4 m, a steep face has tens of them
 EXTREMES = (0.02, 0.98)  # -, quantiles of the profile that tell crests and plates: single pits and burrs do not
+SECTORS = 36  # of a turn, of which the FEWEST nearest to the axis tell narrow crests: one burr is in two at most
 LEAST_HEIGHT = 0.003  # -, over the radius of the plates: a smooth drum of 41 facets or more varies less
 FEWEST = 3  # lifters: an axis beside the middle looks like one, an oval drum like two
 EITHER_WAY = 0.1  # -, of the height to both sides of half way: a rough face there is not counted as several
@@ -113,7 +114,7 @@ def _nearest(lines: np.ndarray) -> np.ndarray:
 
 def _plate_middles(profile: np.ndarray) -> np.ndarray:
     """Return where in the profile the middle of the plate before each lifter is, (k,), in rising order."""
-    crest, plate = np.quantile(profile, EXTREMES)
+    crest, plate = _extremes(profile)
     if plate - crest < LEAST_HEIGHT * plate:
         return np.zeros(0, dtype=np.int64)
     outward = (profile - crest) / (plate - crest) - 0.5
@@ -123,6 +124,15 @@ def _plate_middles(profile: np.ndarray) -> np.ndarray:
     begins, ends = sure[1:][np.diff(side[sure]) < 0.0], sure[np.diff(side[sure], append=1.0) > 0.0]
     ends = np.roll(ends, 1) - len(profile) * (np.arange(len(ends)) == 0)  # of the lifter before
     return shift + (begins + ends) // 2
+
+
+def _extremes(profile: np.ndarray) -> tuple[float, float]:
+    """Return the distances (m) of crests and plates from the axis. Lifters so narrow that the quantile of crests lies
+    below half of their height, or on plates, come as near as the profile does in FEWEST sectors.
+    """
+    crest, plate = np.quantile(profile, EXTREMES)
+    nearest = np.sort(profile.reshape(SECTORS, -1).min(axis=1))[FEWEST - 1]
+    return float(crest if crest < 0.5 * (nearest + plate) else nearest), float(plate)
 
 
 def _lifter(radii: np.ndarray) -> tuple[float, float, float]:
