@@ -99,10 +99,15 @@ def is_answered(test: Mapping[str, Any], root: Path) -> bool:
 def simulate_all(
     tests: Sequence[Mapping[str, Any]], root: Path, parallel: int, say: Callable[[str], None]
 ) -> list[Measurement]:
-    """Return the measurements of tests, up to `parallel` of them simulated at the same time. Raises SolverError."""
+    """Return the measurements of tests, up to `parallel` of them simulated at the same time. Raises SolverError.
+
+    Equal tests, as of boxes that are widened to the same slice, are one simulation.
+    """
     root.mkdir(parents=True, exist_ok=True)
     started, done, lock = time.monotonic(), [], threading.Lock()
-    known = [state.finished_cycles(simulation_folder(test, root), inputs_digest(test)) > 0 for test in tests]
+    asked = [inputs_digest(test) for test in tests]
+    each = dict(zip(asked, tests, strict=True))
+    known = [state.finished_cycles(simulation_folder(test, root), inputs) > 0 for inputs, test in each.items()]
 
     def one(test: Mapping[str, Any], was_known: bool) -> Measurement:
         found, _ = flowing(test, root, say)
@@ -114,7 +119,8 @@ def simulate_all(
         return found
 
     with ThreadPoolExecutor(max_workers=parallel) as pool:
-        return list(pool.map(one, tests, known))
+        answers = dict(zip(each, pool.map(one, each.values(), known), strict=True))
+    return [answers[inputs] for inputs in asked]
 
 
 def answer(measurement: Measurement) -> dict[str, float]:

@@ -10,6 +10,7 @@ from bulkwear.postproc.flow.bulk_test import HEAP, Measurement
 from bulkwear.postproc.flow.outflow import BlockedError
 from bulkwear.postproc.inference.loop import packing_seed
 from bulkwear.workflows.cases.calibration import simulations
+from bulkwear.workflows.cases.calibration.boxes import test_of as bulk_test_of
 from bulkwear.workflows.cases.calibration.simulations import (
     BLOCKED,
     NEXT_PACKING,
@@ -26,6 +27,7 @@ from bulkwear.workflows.engine.bulk_simulations import inputs_digest, simulated,
 from bulkwear.workflows.engine.bulk_tests import rest_energy
 from bulkwear.workflows.engine.solver import SolverError
 from tests.support.bulk_boxes import asked, small
+from tests.support.calibration_study import study
 
 
 @pytest.fixture(scope="module")
@@ -94,6 +96,23 @@ def test_a_blocked_packing_is_done_again_with_another(arches, tmp_path):
     assert answer(simulate_all([test], tmp_path, 1, said.append)[0]) == answer(found)
     arches.clear()
     assert answer(flowing(test, tmp_path, said.append)[0]) == {"discharge_time_s": test["seed"], BLOCKED: 0}
+
+
+def test_equal_tests_of_a_batch_are_one_simulation(arches, monkeypatch, tmp_path):
+    """Boxes that are widened to the same slice are the same test: it is simulated once, and answers for all of them."""
+    runs, asked_for, said = study(shear_box={"width_mm": 53}).runs, [], []
+    sizes = [
+        bulk_test_of(run.parameters, "shear_box", {}, 20_000) for run in runs if run.name in ("L200", "W53", "W80")
+    ]
+
+    def simulate(test, root):
+        asked_for.append(test)
+        return root
+
+    monkeypatch.setattr(simulations, "simulated", simulate)
+    found = simulate_all(sizes, tmp_path, 2, said.append)
+    assert len(asked_for) == len(said) == 2 and len(found) == 3
+    assert found[0] is found[1] and said[-1].startswith("shear_box 2 of 2 simulated")
 
 
 def test_a_blocked_packing_alone_is_no_answer(arches, monkeypatch, tmp_path):
