@@ -31,8 +31,9 @@ from bulkwear.workflows.engine.bulk_tests import Kind, fill_top, filled_box, mar
 from bulkwear.workflows.engine.case import Parameters
 from bulkwear.workflows.engine.chain import RESTART
 from bulkwear.workflows.engine.derived import PERIODIC, WINDOW
+from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.solver import DECK, executable_of, run_deck
-from bulkwear.workflows.engine.state import read_state
+from bulkwear.workflows.engine.state import only_driver, read_state
 from bulkwear.workflows.engine.templates import render, used_sections
 from bulkwear.workflows.engine.work import Stage, Work
 
@@ -98,12 +99,13 @@ register(CONTAINER, Kind(packed_container))
 def packing_table(runs: Mapping[str, Parameters], packing: Mapping[str, Any], folder: Path) -> pd.DataFrame:
     """Simulate a container per particle scale; return its profiles loose and shaken, in display units."""
     tables = []
-    for scale, run in by_scale(runs).items():
-        test = container(run, packing)
-        there = simulated(test, folder, alone=True)
-        loose, dense = (read_snapshot(there / name) for name in (FILLED, HEAP))
-        table = loose_and_dense(loose, dense, run["particle"]["median_diameter_m"], test["box"]["length_m"] ** 2)
-        tables.append(table.assign(particle_scale=scale))
+    with only_driver(folder, Progress("containers", 1).say):
+        for scale, run in by_scale(runs).items():
+            test = container(run, packing)
+            there = simulated(test, folder, alone=True)
+            loose, dense = (read_snapshot(there / name) for name in (FILLED, HEAP))
+            table = loose_and_dense(loose, dense, run["particle"]["median_diameter_m"], test["box"]["length_m"] ** 2)
+            tables.append(table.assign(particle_scale=scale))
     return in_display_units(pd.concat(tables, ignore_index=True))
 
 

@@ -1,5 +1,6 @@
 """Packings: a container that is filled and shaken, pieces of a bed, and contacts counted in its restart file."""
 
+import fcntl
 import math
 
 import numpy as np
@@ -10,6 +11,7 @@ from bulkwear.postproc.flow.bed import read_snapshot
 from bulkwear.postproc.flow.bulk_test import HEAP
 from bulkwear.postproc.flow.packing import inner_means, loose_and_dense, packing_profile
 from bulkwear.workflows.cases.sliding_sample.decks import bed_contacts
+from bulkwear.workflows.cases.sliding_sample.particle_size import packings
 from bulkwear.workflows.cases.sliding_sample.particle_size.kept import other_containers
 from bulkwear.workflows.cases.sliding_sample.particle_size.packings import (
     AT_REST_BEHIND,
@@ -27,7 +29,8 @@ from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.bulk_simulations import FILLED, simulated, simulation_folder
 from bulkwear.workflows.engine.bulk_tests import deck_text, time_step
 from bulkwear.workflows.engine.derived import PERIODIC
-from bulkwear.workflows.engine.solver import DECK, LEDGER_EXECUTABLE, run_deck
+from bulkwear.workflows.engine.solver import DECK, LEDGER_EXECUTABLE, SolverError, run_deck
+from bulkwear.workflows.engine.state import LOCK
 from bulkwear.workflows.engine.templates import render, used_sections
 from tests.support.tiny import tiny_chain, tiny_study
 from tests.support.touching import contacts_of
@@ -190,6 +193,20 @@ def test_a_piece_of_bed_at_rest_is_left_behind_every_sample(fidelity):
     for run in study(fidelity).runs:
         start, end, _ = pieces(run.parameters)["after"]
         assert end - start > 3.0 * run.parameters["particle"]["median_diameter_m"]
+
+
+def test_one_job_at_a_time_simulates_containers(monkeypatch, tmp_path):
+    """Their folder is locked as that of a run: another job waits, and does not write into the same containers."""
+
+    def locked(test, folder, alone):
+        with open(folder / LOCK) as lock, pytest.raises(BlockingIOError):
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        raise SolverError("it was locked")
+
+    monkeypatch.setattr(packings, "simulated", locked)
+    found = study()
+    with pytest.raises(SolverError, match="it was locked"):
+        packing_table(packed_runs(found), to_si(found.settings)["packing"], tmp_path)
 
 
 @pytest.mark.solver
