@@ -10,6 +10,7 @@ import pandas as pd
 
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.workflows.cases.calibration import boxes
+from bulkwear.workflows.cases.calibration.box_checks import BOX_CHECKS
 from bulkwear.workflows.config.clumps import shaped
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.config.published_tables import check_table
@@ -29,11 +30,6 @@ if TYPE_CHECKING:
 PUBLISHED = "config/published"
 DISCREPANCY = "model_discrepancy"  # column of a table of measured responses, where it is known
 LEAST_ANGLE, MOST_ANGLE, LONGEST = 2.0, 90.0, 3600.0  # degrees, degrees, s, of a measured response; radians are less
-LEAST_DIAMETERS = 10.0  # -, of a box: below, no slope can be measured on it
-LEAST_DRAG_DIAMETERS = 6.0  # -, of a plate's way. Measured: with friction 0.7 the bed slides after 2.8
-LEAST_OPENING_DIAMETERS = (
-    5.0  # -, of an opening as simulated. Measured: a slot of 4.0 was blocked, friction 0.32 and 0.37
-)
 
 
 def published(name: str) -> pd.DataFrame:
@@ -65,16 +61,6 @@ def pairs_file(study: Study) -> str:
 # ---------------------------------------------------------------- checks
 
 
-def box_holds_particles(run: CheckedRun) -> Fault | None:
-    """A box is at least ten median diameters of its (coarse-grained) particles long and high."""
-    diameter = run.parameters["particle"]["median_diameter_m"]
-    for section in {"shear_box", *run.parameters["calibration"]["tests"]}:
-        for key in ("length", "fill_height"):
-            if run.parameters[section][f"{key}_m"] < LEAST_DIAMETERS * diameter:
-                return f"{section}.{key}_mm", f"at least {1e3 * LEAST_DIAMETERS * diameter:.4g}, ten particle diameters"
-    return None
-
-
 def rolling_model_of_bodies(run: CheckedRun) -> Fault | None:
     """Clumps have a model of rolling friction that knows of bodies, or none."""
     model = run.parameters["solver"]["rolling_friction"]
@@ -82,33 +68,6 @@ def rolling_model_of_bodies(run: CheckedRun) -> Fault | None:
         return None
     own = " and ".join(OWN_ROLLING_MODELS)
     return "solver.rolling_friction", f"none, or a model of LIGGGHTS, with clumps, because {own} act on spheres alone"
-
-
-def opening_lets_particles_pass(run: CheckedRun) -> Fault | None:
-    """A draw-down test's opening is at least five median diameters long as simulated, shorter than half the box, and a
-    square one no wider than the box."""
-    if "draw_down" not in run.parameters["calibration"]["tests"]:
-        return None
-    box, particle = run.parameters["draw_down"], run.parameters["particle"]
-    wider = boxes.opening_length({"box": box, "particle": particle}) - box["opening_m"]
-    low = LEAST_OPENING_DIAMETERS * particle["median_diameter_m"] - wider
-    if not low <= box["opening_m"] < box["length_m"] / 2.0:
-        return "draw_down.opening_mm", (
-            f"from {1e3 * max(low, 0.0):.4g} (five particle diameters as simulated) to half the box's length"
-        )
-    widest = boxes.simulated_width(box, particle) - wider
-    if box["opening"] == boxes.SQUARE and box["opening_m"] > widest:
-        return "draw_down.opening_mm", f"at most {1e3 * widest:.4g} with draw_down.opening: square, the box's width"
-    return None
-
-
-def drag_makes_it_slide(run: CheckedRun) -> Fault | None:
-    """A plate is drawn at least six median diameters: the bed slides on it in the second half, which is measured."""
-    least = LEAST_DRAG_DIAMETERS * run.parameters["particle"]["median_diameter_m"]
-    asked = boxes.WALL_SHEAR in run.parameters["calibration"]["tests"]
-    if asked and run.parameters["wall_shear"]["drag_m"] < least:
-        return "wall_shear.drag_mm", f"at least {1e3 * least:.4g}, six particle diameters"
-    return None
 
 
 def one_wall_is_looked_for(run: CheckedRun) -> Fault | None:
@@ -219,10 +178,8 @@ class Calibration(Case):
         ("wall_shear", "side_material", "walls"),
     )
     checks: tuple[Check, ...] = (
-        box_holds_particles,
+        *BOX_CHECKS,
         rolling_model_of_bodies,
-        opening_lets_particles_pass,
-        drag_makes_it_slide,
         one_wall_is_looked_for,
         ranges_in_order,
         measured_are_numbers,

@@ -5,9 +5,11 @@ import io
 import pandas as pd
 import pytest
 
-from bulkwear.workflows.cases.calibration import case
+from bulkwear.workflows.cases.calibration import box_checks, case
 from bulkwear.workflows.cases.calibration.driver import pair_of
 from bulkwear.workflows.config.design import ConfigError, load_study
+from bulkwear.workflows.config.layers import Layer
+from bulkwear.workflows.config.run_checks import CheckedRun
 from bulkwear.workflows.engine.project import Project
 from tests.support.calibration_study import MEASURED, PAIRS, ROLLING, SLIDING, study
 
@@ -49,6 +51,35 @@ def test_every_fidelity_loads(fidelity):
             {"bulk": {"shape": "pair"}},
             r"solver\.rolling_friction is 'own_spin'.*allowed is none, or a model of LIGGGHTS, with clumps",
         ),
+        (
+            {"draw_down": {"front_and_back": "walls", "width_mm": 20}},
+            r"draw_down\.width_mm is 20.*allowed is at least 38\.16, three of the largest particles between walls",
+        ),
+        (
+            {"draw_down": {"length_mm": 160}},
+            r"draw_down\.length_mm is 160.*allowed is at least 183\.3, the opening as simulated, 56\.13, and six",
+        ),
+        (
+            {"draw_down": {"lower_height_mm": 60}},
+            r"draw_down\.lower_height_mm is 60.*allowed is at least 181\.5, the level of what flows out",
+        ),
+        (
+            {"draw_down": {"fill_mass_kg_per_m": 1968}},
+            r"draw_down\.fill_mass_kg_per_m is 1968.*allowed is from 101\.6 to 304\.8",
+        ),
+        (
+            {"particle_scale": 1, "shear_box": {"width_mm": 5000}},
+            r"particle_scale is 1 .*allowed is at least .*, or a smaller box: shear_box holds about .* particles",
+        ),
+        (
+            {"rest": {"check_interval_s": 1, "calm_checks": 30}},
+            r"rest\.longest_s is 20.*allowed is at least 3.*looks that rest\.calm_checks asks for 30 s",
+        ),
+        (
+            {"rest": {"longest_s": 0.35}, "calibration": {"tests": ["shear_box"]}},
+            r"rest\.longest_s is 0\.35.*allowed is at least 0\.4027: a fall through the filling of shear_box",
+        ),
+        ({"rest": {"longest_s": 4}}, r"rest\.longest_s is 4.*allowed is at least 4\..*: the outflow of draw_down"),
         ({"bulk": {"shape": "cube"}}, r"bulk\.shape is 'cube'.*allowed is one of sphere, pair, tetrahedron"),
         ({"calibration": {"measured": "none.txt"}}, r"the name of a \.csv file in config/published"),
     ],
@@ -57,6 +88,26 @@ def test_what_cannot_be_calibrated_is_refused(overrides, words):
     """A fault is one sentence that names the key, the value and what is allowed, before anything is simulated."""
     with pytest.raises(ConfigError, match=words):
         load_study("calibration", overrides={"fidelity": "standard", **overrides})
+
+
+@pytest.mark.parametrize(
+    ("check", "key", "words"),
+    [
+        (box_checks.box_holds_particles, "shear_box.length_mm", "at least 318, three of the largest particles"),
+        (box_checks.box_wide_enough, "shear_box.width_mm", "at least 212, two of the largest particles"),
+        (
+            box_checks.opening_lets_particles_pass,
+            "draw_down.opening_mm",
+            "from 306.9 (three of the largest particles as simulated) to half the box's length",
+        ),
+    ],
+)
+def test_boxes_hold_the_largest_particles(check, key, words):
+    """Of particles of 10.6 mm in the middle, and of 106 mm at most, the largest ones decide."""
+    run = load_study("calibration", overrides={"fidelity": "standard"}).runs[0].parameters
+    particle = {**run["particle"], "diameters_m": [0.00848, 0.0106, 0.106]}
+    found = check(CheckedRun((), {}, Layer("", {}, {}), {**run, "particle": particle}))
+    assert found is not None and found[0] == key and found[1].startswith(words)
 
 
 def test_a_test_of_which_nothing_was_measured_is_refused():
