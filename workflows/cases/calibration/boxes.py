@@ -41,6 +41,7 @@ SLOT_FLOW = 0.73  # -, of the flow from a slot, (D - k d)^1.5 sqrt(g); gives the
 SQUARE_FLOW = 0.74  # -, the same of a square, (D - k d)^2.5 sqrt(g): Beverloo's 0.58 of a circle, by area
 OUTFLOW_SHARE = 0.75  # -, of the content that a draw-down test's opening lets out: two slopes of some 30 degrees stay
 REPEATED_PAIRS = 3  # that found first, that it is compared with, and the recommended one
+FIRST_REPEAT = 500  # number of the first packing that is repeated; a calibration has fewer, and shares none
 FORCE_MEANS = 200  # means of a plate's forces over a drag
 STAYING = {
     SHEAR_BOX: 0.54,

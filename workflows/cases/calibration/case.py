@@ -11,6 +11,7 @@ import pandas as pd
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.workflows.cases.calibration import boxes
 from bulkwear.workflows.cases.calibration.box_checks import BOX_CHECKS
+from bulkwear.workflows.cases.calibration.range_checks import RANGE_CHECKS, allowed_value, may_be
 from bulkwear.workflows.config.clumps import shaped
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.config.published_tables import check_table
@@ -83,16 +84,6 @@ def one_wall_is_looked_for(run: CheckedRun) -> Fault | None:
     return None
 
 
-def ranges_in_order(run: CheckedRun) -> Fault | None:
-    """A parameter's low is below its high, and each parameter stands once."""
-    parameters = run.settings["calibration"]["parameters"]
-    if any(each["low"] >= each["high"] for each in parameters):
-        return "calibration.parameters", "a low below the high of every parameter"
-    if len({each["name"] for each in parameters}) < len(parameters):
-        return "calibration.parameters", "each parameter once"
-    return None
-
-
 def measured_are_numbers(run: CheckedRun) -> Fault | None:
     """The table of measured responses has values, deviations above 0, and discrepancies of the model of at least 0."""
     table = published(run.settings["calibration"]["measured"])
@@ -141,6 +132,30 @@ def tests_tell_something(run: CheckedRun) -> Fault | None:
     return None
 
 
+def pairs_are_values(run: CheckedRun) -> Fault | None:
+    """Rows of the table of pairs simulated before have names, each its own, and the two that are simulated here have
+    values that a contact may have, or empty cells.
+    """
+    calibration = run.settings["calibration"]
+    key, table = "calibration.simulated_before", published(calibration["simulated_before"])
+    if "row" not in table:
+        return key, "a table with the column row"
+    taken = {calibration["compared_pair"], calibration["sizes_pair"]}
+    names = [each["name"] for each in calibration["parameters"] if each["name"] in table]
+    seen: set[str] = set()
+    for line, row in enumerate(table.to_dict("records"), 2):
+        name = row["row"]
+        if not isinstance(name, str) or name in seen:
+            found = f"row {name}, {'as another line' if name in seen else 'a number or nothing'}"
+            return key, f"a table whose rows have names of letters, each its own; its line {line} has {found}"
+        seen.add(name)
+        for each in names if name in taken else ():
+            value = pd.to_numeric(row[each], errors="coerce")
+            if pd.notna(row[each]) and not may_be(float(value), each):
+                return key, f"in it {each} {allowed_value(each)}; its line {line} has {row[each]}"
+    return None
+
+
 def pairs_are_known(run: CheckedRun) -> Fault | None:
     """The compared pair and that of the sizes are rows of the table of pairs simulated before."""
     calibration = run.settings["calibration"]
@@ -158,6 +173,16 @@ def initial_below_most(run: CheckedRun) -> Fault | None:
         if calibration["initial"][test] > calibration["most"][test]:
             return "calibration.most", f"for {test} at least calibration.initial.{test}, {calibration['initial'][test]}"
     return None
+
+
+def packings_are_others(run: CheckedRun) -> Fault | None:
+    """All tests together have no more simulations than there are packings before those that are repeated."""
+    calibration = run.settings["calibration"]
+    found = sum(calibration["most"][test] for test in calibration["tests"])
+    if found <= boxes.FIRST_REPEAT:
+        return None
+    words = f"at most {boxes.FIRST_REPEAT} for all tests together, which have {found}"
+    return "calibration.most", f"{words}: more have the seeds of packings that are repeated"
 
 
 class Calibration(Case):
@@ -181,12 +206,14 @@ class Calibration(Case):
         *BOX_CHECKS,
         rolling_model_of_bodies,
         one_wall_is_looked_for,
-        ranges_in_order,
+        *RANGE_CHECKS,
         measured_are_numbers,
         measured_are_responses,
         tests_tell_something,
+        pairs_are_values,
         pairs_are_known,
         initial_below_most,
+        packings_are_others,
     )
     run_templates = tuple(boxes.KINDS)
     run_rules = ()

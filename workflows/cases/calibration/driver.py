@@ -17,7 +17,7 @@ import pandas as pd
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.postproc.inference.loop import Posterior, Request, calibrate, packing_seed, posterior
 from bulkwear.postproc.inference.problem import Experiment, Parameter, Problem
-from bulkwear.workflows.cases.calibration.boxes import SHEAR_BOX, SIMULATIONS, simulated_width, test_of
+from bulkwear.workflows.cases.calibration.boxes import FIRST_REPEAT, SHEAR_BOX, SIMULATIONS, simulated_width, test_of
 from bulkwear.workflows.cases.calibration.responses import FOUND_FIRST, RECOMMENDED, read_measured
 from bulkwear.workflows.cases.calibration.simulations import BLOCKED, FOLDERS, answer, packings_of, simulate_all
 from bulkwear.workflows.cases.calibration.told import told_sentences
@@ -26,7 +26,6 @@ from bulkwear.workflows.engine.bulk_simulations import simulation_folder
 from bulkwear.workflows.engine.case import Parameters
 from bulkwear.workflows.engine.job import Progress
 
-FIRST_REPEAT = 500  # number of the first packing that is repeated; a calibration has fewer, and shares none
 SHEAR_ANGLE = "shear_angle_deg"
 
 

@@ -5,8 +5,9 @@ import io
 import pandas as pd
 import pytest
 
+from bulkwear.postproc.inference.loop import packing_seed
 from bulkwear.workflows.cases.calibration import box_checks, case
-from bulkwear.workflows.cases.calibration.driver import pair_of
+from bulkwear.workflows.cases.calibration.driver import pair_of, repeat_seeds
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.layers import Layer
 from bulkwear.workflows.config.run_checks import CheckedRun
@@ -125,6 +126,52 @@ def test_ranges_must_be_ranges():
         parameters = [{"name": SLIDING, "low": 0.1, "high": 0.7}, second]
         with pytest.raises(ConfigError, match=r"calibration\.parameters"):
             study(calibration={"parameters": parameters})
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high", "words"),
+    [
+        ("particle.contact.restitution", 0.0, 0.9, "a number above 0.05 and at most 1; its low is 0"),
+        ("particle.contact.restitution", 0.05, 0.9, "a number above 0.05 and at most 1; its low is 0.05"),
+        ("particle.contact.restitution", 0.3, 5, "a number above 0.05 and at most 1; its high is 5"),
+    ],
+)
+def test_ranges_hold_what_a_contact_may_have(name, low, high, words):
+    """The solver ends with an error at a restitution of 0.05 or less, or above 1, whenever one is drawn."""
+    parameters = [{"name": SLIDING, "low": 0.1, "high": 0.7}, {"name": name, "low": low, "high": high}]
+    with pytest.raises(ConfigError, match=rf"calibration\.parameters is .*allowed is {name} {words}"):
+        study(calibration={"parameters": parameters})
+
+
+def test_packings_that_are_repeated_are_others():
+    """A calibration of 501 simulations or more would have one of the seeds with which pairs are repeated."""
+    most = {"shear_box": 400, "draw_down": 101}
+    with pytest.raises(ConfigError, match=r"calibration\.most is .*allowed is at most 500 for all .* have 501"):
+        study(fidelity="standard", calibration={"most": most})
+    run = study(fidelity="standard", calibration={"most": {**most, "draw_down": 100}}).runs[0].parameters
+    assert packing_seed(run["calibration"]["seed"], 499) < min(repeat_seeds(run))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("name,source\ncalibrated,me\n", "allowed is a table with the column row"),
+        ("row,source\n1,me\n2,me\n", "names of letters, each its own; its line 2 has row 1, a number"),
+        ("row\ncalibrated\nsize-test\ncalibrated\n", "each its own; its line 4 has row calibrated, as another line"),
+        (f"row,{SLIDING}\nother,-1\ncalibrated,-0.4\nsize-test,0.2\n", "from 0 to 5; its line 3 has -0.4"),
+        (f"row,{SLIDING}\ncalibrated,0.4\nsize-test,much\n", "from 0 to 5; its line 3 has much"),
+    ],
+)
+def test_pairs_that_cannot_be_simulated_are_refused(monkeypatch, text, words):
+    """They are simulated last, after hours: a fault of theirs is named with its line before."""
+    real = case.published
+
+    def shown(name):
+        return pd.read_csv(io.StringIO(text)) if name == "gravel_pairs.csv" else real(name)
+
+    monkeypatch.setattr(case, "published", shown)
+    with pytest.raises(ConfigError, match=rf"calibration\.simulated_before is 'gravel_pairs\.csv'.*{words}"):
+        study()
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,47 @@
+"""Checks of the ranges in which a calibration looks for parameters, and of their values, before any solver starts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault
+from bulkwear.workflows.config.schema import load_schema, validator
+from bulkwear.workflows.config.validation import allowed_text
+
+
+def _contact_schema(parameter: str) -> dict[str, Any]:
+    """Return the schema of a parameter that is looked for, that of the contact in the file of materials."""
+    return load_schema("materials")["$defs"]["contact"]["properties"][parameter.rpartition(".")[2]]
+
+
+def may_be(value: Any, parameter: str) -> bool:
+    """Return whether a parameter of a contact may have that value."""
+    return validator()(_contact_schema(parameter)).is_valid(value)
+
+
+def allowed_value(parameter: str) -> str:
+    """Return in words which values that are."""
+    return allowed_text(_contact_schema(parameter))
+
+
+def ranges_in_order(run: CheckedRun) -> Fault | None:
+    """A parameter's low is below its high, and each parameter stands once."""
+    parameters = run.settings["calibration"]["parameters"]
+    if any(each["low"] >= each["high"] for each in parameters):
+        return "calibration.parameters", "a low below the high of every parameter"
+    if len({each["name"] for each in parameters}) < len(parameters):
+        return "calibration.parameters", "each parameter once"
+    return None
+
+
+def ranges_are_of_contacts(run: CheckedRun) -> Fault | None:
+    """A range holds values alone that a contact may have in the file of materials, which are those of the solver."""
+    for each in run.settings["calibration"]["parameters"]:
+        for end in ("low", "high"):
+            if not may_be(each[end], each["name"]):
+                allowed = f"{each['name']} {allowed_value(each['name'])}"
+                return "calibration.parameters", f"{allowed}; its {end} is {each[end]:g}"
+    return None
+
+
+RANGE_CHECKS: tuple[Check, ...] = (ranges_in_order, ranges_are_of_contacts)
