@@ -11,12 +11,14 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.postproc.inference.problem import Problem
 from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, SIMULATIONS, simulated_width
+from bulkwear.workflows.cases.calibration.case import published
 from bulkwear.workflows.cases.calibration.driver import repeated
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, repeat_table, with_bands
 from bulkwear.workflows.config.design import load_study
@@ -36,6 +38,23 @@ def pair_found(repeats: pd.DataFrame, pair: str, names: list[str]) -> dict[str, 
         there = ", ".join(dict.fromkeys(repeats["pair"]))
         raise ValueError(f"repeats.csv has no pair {pair!r}, there are {there}.")
     return {name: float(rows[name].iloc[0]) for name in names}
+
+
+def asked_run(study: str, fidelity: str, test: str, seeds: int) -> Parameters:
+    """Return the parameters of a study's first box for one test with so many packings.
+
+    Where something was measured in the test, they are checked as those of a study of that test: the study's own may not
+    have it. Raises ConfigError.
+    """
+
+    def run_of(**asked: Any) -> Parameters:
+        overrides = {"fidelity": fidelity, "calibration": {"repeats": seeds, **asked}}
+        return load_study(study, overrides=overrides).all_runs[0].parameters
+
+    run = run_of()
+    if set(published(run["calibration"]["measured"])["response"]) & set(RESPONSES[test]):
+        return run_of(tests=[test])
+    return {**run, "calibration": {**run["calibration"], "tests": [test]}}
 
 
 def check_pair(parameters: Parameters, pair: str, folder: Path, workers: int) -> pd.DataFrame:
@@ -76,8 +95,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=1, help="simulations at the same time")
     given = parser.parse_args()
     work_here()
-    run = load_study(given.study, overrides={"fidelity": given.fidelity}).all_runs[0].parameters
-    run = {**run, "calibration": {**run["calibration"], "tests": [given.test], "repeats": given.seeds}}
+    run = asked_run(given.study, given.fidelity, given.test, given.seeds)
     print(check_pair(run, given.pair, Path("results") / given.study, given.workers).to_string(index=False))
 
 

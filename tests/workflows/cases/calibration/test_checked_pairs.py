@@ -5,8 +5,9 @@ import shutil
 import pandas as pd
 import pytest
 
-from bulkwear.workflows.cases.calibration.checked_pairs import check_pair, checked_means
+from bulkwear.workflows.cases.calibration.checked_pairs import asked_run, check_pair, checked_means
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
+from bulkwear.workflows.config.layers import ConfigError
 from tests.support.calibration_study import ROLLING, SLIDING, study
 
 
@@ -29,6 +30,17 @@ def test_a_test_without_a_measured_response_has_rows_and_no_means(done, formula,
     shutil.copy(done.folder / "repeats.csv", tmp_path)
     table = check_pair(run, RECOMMENDED, tmp_path, 1)
     assert table["wall_friction_angle_deg"].notna().all() and checked_means(table, done.problem).empty
+
+
+def test_a_test_that_the_study_does_not_have_is_checked_too():
+    """At quick the study has a shear box alone: the slot of its draw-down test is too narrow for these particles."""
+    with pytest.raises(ConfigError, match=r"draw_down\.opening_mm is 45.*five particle diameters"):
+        asked_run("calibration", "quick", "draw_down", 2)
+    with pytest.raises(ConfigError, match=r"calibration\.repeats is 0"):
+        asked_run("calibration", "standard", "draw_down", 0)
+    for test in ("draw_down", "wall_shear"):  # nothing was measured in the second one
+        found = asked_run("calibration", "standard", test, 3)["calibration"]
+        assert (found["tests"], found["repeats"]) == ([test], 3)
 
 
 def test_only_packings_of_one_pair_and_test_are_averaged(done):
