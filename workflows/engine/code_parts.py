@@ -34,7 +34,10 @@ ASIDE = {  # files that change no number of a run
     "meshes/estimate.py",
 }
 # of cases, what refuses, forecasts or evaluates
-ASIDE_OF_CASES = {"checks.py", "evaluation.py", "machine_checks.py", "study.py", "volume.py", "work.py"}
+ASIDE_OF_CASES = {
+    *("box_checks.py", "checks.py", "machine_checks.py", "range_checks.py"),
+    *("evaluation.py", "study.py", "volume.py", "work.py"),
+}
 PLANS = ("workflows/config", "workflows/engine", "workflows/forecast")  # what plans and runs; others only ask it
 ROOTS = ("case.py", "decks.py", "driver.py", "simulations.py")  # of a case's folder, whence its code is found
 PACKAGE_NAME = "bulkwear"
