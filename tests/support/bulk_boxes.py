@@ -4,6 +4,10 @@ from bulkwear.workflows.cases.calibration.boxes import test_of as bulk_test_of
 from bulkwear.workflows.config.design import load_study
 
 SLIDING, ROLLING = "particle.contact.sliding_friction", "particle.contact.rolling_friction"
+NOT_ROLLING = [  # what may be looked for without a model of rolling friction
+    {"name": SLIDING, "low": 0.1, "high": 0.7},
+    {"name": "particle.contact.restitution", "low": 0.2, "high": 0.8},
+]
 PAIR = {SLIDING: 0.3, ROLLING: 0.3}
 SEED = 20_000
 

@@ -8,6 +8,8 @@ from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault
 from bulkwear.workflows.config.schema import load_schema, validator
 from bulkwear.workflows.config.validation import allowed_text
 
+NO_MODEL = "none"  # value of solver.rolling_friction
+
 
 def _contact_schema(parameter: str) -> dict[str, Any]:
     """Return the schema of a parameter that is looked for, that of the contact in the file of materials."""
@@ -44,4 +46,13 @@ def ranges_are_of_contacts(run: CheckedRun) -> Fault | None:
     return None
 
 
-RANGE_CHECKS: tuple[Check, ...] = (ranges_in_order, ranges_are_of_contacts)
+def rolling_has_a_model(run: CheckedRun) -> Fault | None:
+    """Rolling friction is looked for under a model of it: under none, every value has the same responses."""
+    sought = [each["name"] for each in run.settings["calibration"]["parameters"]]
+    rolling = next((name for name in sought if name.endswith(".rolling_friction")), None)
+    if rolling is None or run.parameters["solver"]["rolling_friction"] != NO_MODEL:
+        return None
+    return "solver.rolling_friction", f"a model, where calibration.parameters has {rolling}"
+
+
+RANGE_CHECKS: tuple[Check, ...] = (ranges_in_order, ranges_are_of_contacts, rolling_has_a_model)

@@ -17,9 +17,13 @@ from bulkwear.workflows.cases.calibration.boxes import (
 )
 from bulkwear.workflows.engine.bulk_tests import deck_text, time_step
 from bulkwear.workflows.engine.grains import smallest_radius
-from tests.support.bulk_boxes import PAIR, ROLLING, SLIDING, asked
+from tests.support.bulk_boxes import NOT_ROLLING, PAIR, ROLLING, SLIDING, asked
 
 EXACT = 1e-12  # relative: the same formula
+NO_ROLLING = {
+    "solver": {"rolling_friction": "none"},
+    "calibration": {"parameters": NOT_ROLLING},
+}
 
 
 @pytest.mark.parametrize("kind", ["shear_box", "draw_down", "wall_shear"])
@@ -36,13 +40,13 @@ def test_decks_render_with_what_they_say(kind, front_and_back):
 
 def test_clumps_that_flow_out_lie_in_a_pit():
     """The solver takes no bodies out: walls hold them within the domain, all of them below the box's floor."""
-    test = asked(bulk={"shape": "pair", "material": "river_gravel_published"}, solver={"rolling_friction": "none"})
+    test = asked(bulk={"shape": "pair", "material": "river_gravel_published"}, **NO_ROLLING)
     text, given = deck_text(test), shear_box(test)
     assert "delete_atoms" not in text and "erotate/multisphere" in text and "2*ke/atoms" in text
     assert given["domain_bottom_m"] < given["pit_bottom_m"] < -test["box"]["fill_height_m"]
     assert given["domain_back_m"] < given["pit_back_m"] < 0.0
     assert test["box"]["length_m"] < given["pit_front_m"] < given["domain_front_m"]
-    spheres = asked(bulk={"material": "river_gravel_published"}, solver={"rolling_friction": "none"})
+    spheres = asked(bulk={"material": "river_gravel_published"}, **NO_ROLLING)
     assert "delete_atoms" in deck_text(spheres) and "pit" not in deck_text(spheres)
     assert time_step(test) == pytest.approx(
         2.0 * smallest_radius(test["particle"]) / (2.0 * smallest_radius(spheres["particle"])) * time_step(spheres),

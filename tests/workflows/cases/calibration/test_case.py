@@ -49,6 +49,10 @@ def test_every_fidelity_loads(fidelity):
             r"shear_box\.wall_material is 'perspex'.*allowed is steel, as of draw_down",
         ),
         (
+            {"solver": {"rolling_friction": "none"}},
+            r"solver\.rolling_friction is 'none'.*allowed is a model, where .* has particle\.contact\.rolling_friction",
+        ),
+        (
             {"bulk": {"shape": "pair"}},
             r"solver\.rolling_friction is 'own_spin'.*allowed is none, or a model of LIGGGHTS, with clumps",
         ),

@@ -10,11 +10,15 @@ from bulkwear.postproc.readers.solver_log import thermo_table
 from bulkwear.workflows.cases.calibration.boxes import shear_box, with_values
 from bulkwear.workflows.cases.calibration.simulations import measured
 from bulkwear.workflows.engine.bulk_simulations import LOG, filling_measures, simulated
-from tests.support.bulk_boxes import asked
+from tests.support.bulk_boxes import NOT_ROLLING, asked
 
 pytestmark = pytest.mark.solver
 
-PAIRS = {"bulk": {"shape": "pair", "material": "river_gravel_published"}, "solver": {"rolling_friction": "none"}}
+PAIRS = {
+    "bulk": {"shape": "pair", "material": "river_gravel_published"},
+    "solver": {"rolling_friction": "none"},
+    "calibration": {"parameters": NOT_ROLLING},
+}
 WALL_FRICTION = 0.2  # -, low enough that clumps slide over the plate and do not turn
 WALL = "wall_material.contact.sliding_friction"
 SLIDES = 0.1  # deg, of the mean over the drag; measured 1e-8, and 0.013 over twice the way
