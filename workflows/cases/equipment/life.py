@@ -195,7 +195,7 @@ def part_life(runs: Runs, setting: str, part: str, volume: float = math.nan) -> 
 
 def allowed_depths(thickness: np.ndarray, rule: Mapping[str, Any]) -> np.ndarray:
     """Return the depth (p,) m that places may lose by the rule of a study, their thickness (p,) m without one; NaN
-    where the thickness is not known or less than what shall remain.
+    where the thickness is not known or no more than what shall remain.
     """
     remaining = rule.get("change_out_remaining_m", 0.0)
     fraction = rule.get("change_out_remaining_fraction", 0.0)
