@@ -6,6 +6,7 @@ the same order it must give the same answers; then a calibration is the same how
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -20,7 +21,6 @@ from bulkwear.postproc.inference.surrogate import Surrogate, fit_surrogates, pre
 
 CANDIDATES_POWER = 12  # 4096 points carry the posterior
 SEED_SPACING = 1000  # the largest gap between primes below 4e8 is 282, and a simulation needs a handful of them
-INITIAL_POWER = 6  # of the sequence that the first simulations are the beginning of
 
 
 def packing_seed(first: int, number: int) -> int:
@@ -107,7 +107,7 @@ def posterior(problem: Problem, simulations: pd.DataFrame, power: int = CANDIDAT
 def initial_points(problem: Problem, test: Experiment, known: Posterior | None) -> np.ndarray:
     """Return the points of a test's first simulations: over the whole range, or over the family that is left."""
     if known is None:
-        return problem.spread_points(INITIAL_POWER)[: test.initial]
+        return problem.spread_points(math.ceil(math.log2(test.initial)))[: test.initial]
     family = densest(known.weights, FAMILY_SHARE)
     return spread_over(known.points, known.recommended, family, test.initial)
 

@@ -11,7 +11,7 @@ from bulkwear.postproc.inference.acquisition import (
     next_points,
     surrogate_share,
 )
-from bulkwear.postproc.inference.loop import calibrate, posterior
+from bulkwear.postproc.inference.loop import calibrate, initial_points, posterior
 from bulkwear.postproc.inference.posterior import (
     denser_shares,
     densest,
@@ -99,6 +99,14 @@ def test_a_calibration_repeats_itself():
     tests = (Experiment("box", ("angle",), 6, 10),)
     first, second = (calibrate(problem(5, tests=tests), simulate).simulations for _ in range(2))
     assert first.equals(second)
+
+
+def test_as_many_initial_points_as_asked_for():
+    """Also more than one power of two; fewer are the beginning of more."""
+    many = initial_points(problem(0), Experiment("box", RESPONSES["box"], 100, 100), None)
+    few = initial_points(problem(0), Experiment("box", RESPONSES["box"], 5, 100), None)
+    assert len(many) == 100 and len(np.unique(many, axis=0)) == 100
+    np.testing.assert_array_equal(few, many[:5])
 
 
 def test_it_stops_when_the_measurement_is_what_blurs():
