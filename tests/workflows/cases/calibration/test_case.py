@@ -20,6 +20,16 @@ WALL = [
 ]
 
 
+def show(monkeypatch, table, text):
+    """Let a published table hold another text."""
+    real = case.published
+
+    def shown(name):
+        return pd.read_csv(io.StringIO(text)) if name == table else real(name)
+
+    monkeypatch.setattr(case, "published", shown)
+
+
 @pytest.mark.parametrize("fidelity", ["quick", "standard", "paper"])
 def test_every_fidelity_loads(fidelity):
     """Each fidelity is a valid study; quick takes the shear box alone, the others both tests."""
@@ -168,12 +178,7 @@ def test_packings_that_are_repeated_are_others():
 )
 def test_pairs_that_cannot_be_simulated_are_refused(monkeypatch, text, words):
     """They are simulated last, after hours: a fault of theirs is named with its line before."""
-    real = case.published
-
-    def shown(name):
-        return pd.read_csv(io.StringIO(text)) if name == "gravel_pairs.csv" else real(name)
-
-    monkeypatch.setattr(case, "published", shown)
+    show(monkeypatch, "gravel_pairs.csv", text)
     with pytest.raises(ConfigError, match=rf"calibration\.simulated_before is 'gravel_pairs\.csv'.*{words}"):
         study()
 
@@ -198,12 +203,7 @@ def test_pairs_that_cannot_be_simulated_are_refused(monkeypatch, text, words):
 )
 def test_a_table_of_measurements_that_says_nothing_is_refused(monkeypatch, text, words):
     """A column that is missing, or a number that is none, is named with its line."""
-    real = case.published
-
-    def shown(name):
-        return pd.read_csv(io.StringIO(text)) if name == "gravel_tests.csv" else real(name)
-
-    monkeypatch.setattr(case, "published", shown)
+    show(monkeypatch, "gravel_tests.csv", text)
     with pytest.raises(ConfigError, match=rf"calibration\.measured is 'gravel_tests\.csv'.*{words}"):
         study()
 
