@@ -134,6 +134,35 @@ def test_how_far_grooves_depend_on_the_mesh():
     assert "the grooves are {:.0f}, {:.0f} and {:.0f} µm deep".format(*each) in page
 
 
+def test_how_a_pins_volume_grows():
+    """Changes of the rate with their intervals and verdicts, and the source's."""
+    found, page = table("tables/pin_on_disc_standard_fits.csv"), told("pin_on_disc.md")
+    found = found[found["wear_coefficient_per_pa"] == 1.7e-11].set_index(["scheme", "volume"])
+    kept, moved, touched = (
+        found.loc[each]
+        for each in (
+            ("conserving", "removed"),
+            ("per_triangle", "removed"),
+            ("per_triangle", "Eq 5.9, touched"),
+        )
+    )
+    assert (kept["growth"], moved["growth"], touched["growth"]) == ("linear", "cannot be said", "cannot be said")
+    columns = ["change_percent", "least_change_percent", "largest_change_percent"]
+    assert "its rate changes by {:.1f} % ({:.1f} to {:.1f}), where".format(*kept[columns]) in page
+    assert f"the source's fit makes {found.loc[('Yan 2022, Eq 5.13', 'published'), 'change_percent']:.0f} %" in page
+    assert "cannot be said: {:.1f} % ({:.0f} to {:.0f}), and".format(*moved[columns]) in page
+    assert "in contact alone {:.0f} % ({:.0f} to {:.0f})".format(*touched[columns]) in page
+
+
+def test_what_too_long_a_time_step_makes_of_a_pin():
+    """Contacts in round grooves, and the work beyond the stable step."""
+    found, page = table("pin_time_step.csv"), told("pin_on_disc.md")
+    beyond = found[(found["restitution"] == 0.5) & (found["time_step_over_limit"] == 1.15)]
+    beyond = beyond[beyond["groove"].str.startswith("round")]
+    assert "mm deep have {:.0f} and {:.0f}: there a step of 1.15".format(*beyond["contacts"]) in page
+    assert "makes {:.1f} and {:.1f} times the work".format(*beyond["work_over_FL"]) in page
+
+
 def test_what_decisions_say_of_softness_and_time_steps():
     """Wear that the source's modulus adds, and what the chosen time step changes where runs start without a kick."""
     page, softness = told("decisions.md"), told("stiffness.md")
