@@ -1,5 +1,6 @@
 """Numbers that pages of docs tell in sentences of their own are those of the tables beside them, rounded."""
 
+import math
 import re
 
 import pandas as pd
@@ -61,6 +62,35 @@ def test_what_seventeen_revolutions_of_the_tester_show():
     assert (
         f"it loses {ratio['ratio']} of the plain one's volume ({ratio['ratio low']} to {ratio['ratio high']})" in page
     )
+
+
+def test_what_presses_on_the_tester_and_how_fast_it_passes():
+    """Weights of level bed and heap (N) at the source's bulk density; velocity over the sample and of the whole bed."""
+    page, results = told("circular_tester.md"), "circular_tester_results_quick.md"
+    newtons_per_mm = 1455.0 * 9.81 * 0.1 * 0.1 / 1e3
+    depth = rows(results, "bed", "settings", "packing")["depth found mm"].astype(float).mean()
+    means = table("tables/circular_tester_quick_steadiness.csv").query("surface == 'plain'").groupby("measure")["mean"]
+    height, speed = 1e3 * means.mean()["bed_height_m"], means.mean()["velocity_m_per_s"]
+    assert f"not of the level bed, {newtons_per_mm * depth:.1f} N" in page
+    assert f"stands {height:.0f} mm high" in page and f": {newtons_per_mm * height:.1f} N. At standard" in page
+    runs = rows(results, "run", "series", "surface").query("series == 'volume' and surface == 'plain'")
+    bed = runs["bed over floor velocity"].astype(float).mean()
+    share = speed / (0.395 * math.pi / 2.0)  # the trough's mean radius (m), 90 degrees a second
+    assert f"{speed:.2f} m/s, {share:.2f} of the trough's speed, where the whole bed has {bed:.2f};" in page
+
+
+def test_how_much_lower_bumps_of_the_tester_are():
+    """Losses of the bumps that the laboratory measured, and over the measured ones of all settings."""
+    page, found = told("circular_tester.md"), table("published/circular_tester_results_quick.csv").set_index("finding")
+    told_of = [found.loc[f"Largest loss of {bump} after 240.3 mm3", "found"] for bump in ("C11", "C13", "C15")]
+    losses = [re.match(r"(\S+) mm \(95 % interval (\S+) to (\S+),", each) for each in told_of]
+    first, second, third = [[float(value) for value in each.groups()] for each in losses]
+    assert "have lost up to {:.2f} mm ({:.2f} to {:.2f}), ".format(*first) in page
+    assert "{:.2f} ({:.2f} to {:.2f}) and {:.2f} ({:.2f} to {:.2f}) of height;".format(*second, *third) in page
+    settings = table("tables/tester_sensitivity_quick_sensitivity.csv").query("quantity.str.startswith('Largest')")
+    measured = settings["published"].str.extract(r"published (\S+)\)")[0].astype(float)
+    over = settings["value"] / measured
+    assert f"losses of bumps ({over.min():.1f} to {over.max():.1f} times the measured ones)" in page
 
 
 def test_what_settings_of_the_tester_reach():
