@@ -193,6 +193,24 @@ def test_what_too_long_a_time_step_makes_of_a_pin():
     assert "makes {:.1f} and {:.1f} times the work".format(*beyond["work_over_FL"]) in page
 
 
+def test_why_the_critical_scale_differs():
+    """Ratios of convex to plain wear with one size of particles, with rolling on relative spin, and with both."""
+    page, key = told("particle_size.md"), ["candidate", "particle scale"]
+    found = rows("critical_scale_results.md", "particle scale", "candidate", "kind").set_index(key)
+    one, spin, both = (
+        found.loc[each]
+        for each in ("one size of particles", "rolling on relative spin", "one size, rolling on relative spin")
+    )
+    at_4 = one.loc["4", ["over reference", "over reference low", "over reference high"]].astype(float)
+    assert f"it is {float(one.loc['3', 'over reference']):.1f} times as large at scale 3 (one packing)" in page
+    assert "{:.1f} times ({:.1f} to {:.1f}) at scale 4".format(*at_4) in page
+    assert "{:.2f}, {:.2f}, {:.2f} and {:.2f} at 3, 4, 6 and 8".format(*one["wear over plain"].astype(float)) in page
+    off = 100.0 * (1.0 - spin["over reference"].astype(float))
+    assert f"takes {off.min():.0f} to {off.max():.0f} % off the ratio" in page
+    flat = both["wear over plain"].astype(float)
+    assert f"the ratio is {flat.min():.2f} to {flat.max():.2f} at 4 to 8" in page
+
+
 def test_what_decisions_say_of_softness_and_time_steps():
     """Wear that the source's modulus adds, and what the chosen time step changes where runs start without a kick."""
     page, softness = told("decisions.md"), told("stiffness.md")
