@@ -193,6 +193,22 @@ def test_what_too_long_a_time_step_makes_of_a_pin():
     assert "makes {:.1f} and {:.1f} times the work".format(*beyond["work_over_FL"]) in page
 
 
+def test_what_the_best_pattern_wears():
+    """The best pattern and R5 over plain with their intervals, at quick and, of R5, at standard."""
+    page, key = told("optimised_pattern.md"), ["setting", "surface"]
+    best = rows("optimised_pattern_results_quick.md", "setting", "major radius mm", "minor radius mm").iloc[0]
+    found = table("tables/optimised_pattern_quick_key_numbers.csv").set_index(key)
+    interval, over = "{:.2f} ({:.2f} to {:.2f})".format, ["wear_over_plain", "interval_low", "interval_high"]
+    best_one, r5 = (interval(*found.loc[(each, "convex"), over]) for each in (best["setting"], "R5"))
+    predicted = interval(*best[["predicted", "predicted low", "predicted high"]].astype(float))
+    of_r5 = interval(*best[["over reference", "over reference low", "over reference high"]].astype(float))
+    assert f"wears {best_one} of a plain plate**, predicted {predicted}, and {of_r5} of R5." in page
+    assert f"Of its bumps {float(best['left percent']):.0f} % are left" in page
+    standard = rows("screening_results_standard.md", "setting", "surface", "packings").set_index(key)
+    long = standard.loc[("R5", "convex"), ["wear over plain", "interval low", "interval high"]].astype(float)
+    assert f"R5 wears {r5} of plain there, and {interval(*long)} on the source's sample" in page
+
+
 def test_why_the_critical_scale_differs():
     """Ratios of convex to plain wear with one size of particles, with rolling on relative spin, and with both."""
     page, key = told("particle_size.md"), ["candidate", "particle scale"]
