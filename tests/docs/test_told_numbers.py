@@ -193,6 +193,50 @@ def test_what_too_long_a_time_step_makes_of_a_pin():
     assert "makes {:.1f} and {:.1f} times the work".format(*beyond["work_over_FL"]) in page
 
 
+def test_how_studies_took_their_forecasts():
+    """Least and largest share of the forecast that a study's solver took."""
+    found = table("benchmarks.csv").query("benchmark == 'study_share' and against == 'its forecast'")["ratio"]
+    assert f"{found.min():.1f} to {found.max():.1f} of their forecast" in told("forecast.md")
+
+
+def test_which_rolling_model_is_nearest_and_when_a_layer_flows():
+    """Angles below the source's with their intervals, slopes at which a layer flows, and its creep before."""
+    page, results = told("rolling_friction.md"), "rolling_models_results.md"
+    found = rows(results, "response", "model", "pairs").set_index(["response", "model"])
+    below = found.loc["Shear angle, shear box (°)"][["mean difference", "low", "high"]].astype(float)
+    own, epsd2, cdt, rvd = (below.loc[each] for each in ("own spin", "epsd2", "cdt", "rvd"))
+    assert f"stays {-own.iloc[0]:.1f} degrees below the source's angle in the shear box" in page
+    assert f"to {own.iloc[2]:.1f} above), `epsd2` {-epsd2.iloc[0]:.1f} ({-epsd2.iloc[2]:.1f} to" in page
+    assert f"`cdt` {-cdt.iloc[0]:.1f} and `rvd` {-rvd.iloc[0]:.0f} below, of two packings" in page
+    layers = table("tilted_bed.csv").groupby("model")[["flow_angle_deg", "creep_mm_per_s"]].mean()
+    flow, creep = layers["flow_angle_deg"].round(), layers["creep_mm_per_s"]
+    assert flow["cdt"] == flow["rvd"]
+    words = f"{flow['cdt']:.0f} (`cdt`, `rvd`), {flow['epsd2']:.0f} (`epsd2`) and {flow['own_spin']:.0f} degrees"
+    assert f"begins to flow at {words} (`own_spin`)" in page
+    still = creep[["epsd2", "own_spin"]].max()
+    assert f"creeps at {creep['cdt']:.1f} and {creep['rvd']:.1f} mm/s, under the others at {still:.3f} and less" in page
+
+
+def test_what_the_calibrations_pairs_give():
+    """What the recommended pair and the published one are off by, and the source's pair under three rolling models."""
+    page, results = told("calibration.md"), "calibration_results_standard.md"
+    found = rows(results, "pair", "response", "measured").set_index(["pair", "response"])
+    off = found["simulated"].astype(float) - found["measured"].astype(float)
+    box, draw, repose, time = (
+        "Shear angle, shear box (°)",
+        "Shear angle, draw-down (°)",
+        "Angle of repose (°)",
+        "Discharge time (s)",
+    )
+    ours, published = off.loc["recommended"], off.loc["calibrated"]
+    assert f"({ours[draw]:+.1f} and {ours[repose]:+.1f} degrees)" in page
+    assert f"shear box ({ours[box]:+.1f} degrees" in page and f"discharges {-ours[time]:.1f} s too early" in page
+    assert f"gives shear angles {-published[box]:.1f} and {-published[draw]:.1f} degrees below" in page
+    angles = rows("rolling_models_results.md", "pair", "published", "cdt").iloc[0]
+    assert f"gives {angles['cdt']}° under `cdt` (two packings), {angles['epsd2']}° under `epsd2`" in page
+    assert f"where two packings of the calibration below give {found.loc[('calibrated', box), 'simulated']}°" in page
+
+
 def test_what_the_best_pattern_wears():
     """The best pattern and R5 over plain with their intervals, at quick and, of R5, at standard."""
     page, key = told("optimised_pattern.md"), ["setting", "surface"]
