@@ -1,130 +1,15 @@
 """Numbers that pages of docs tell in sentences of their own are those of the tables beside them, rounded."""
 
-import math
 import re
 
-import pandas as pd
+from tests.support.told import rows, table, told
 
-from tests import REPOSITORY
-from tests.support.doc_pages import read
-
-DOCS = REPOSITORY / "docs"
 SHORTEST, CHOSEN = "0.1", "0.4"  # time steps over the Rayleigh time
-
-
-def told(page):
-    """The words of a page with single spaces between them."""
-    return " ".join(read(DOCS / page).split())
-
-
-def table(name, **more):
-    """A table of docs."""
-    return pd.read_csv(DOCS / name, **more)
-
-
-def rows(page, *first):
-    """The table on a page whose first columns are these, cells as they stand there."""
-    _, head, below = read(DOCS / page).partition(f"| {' | '.join(first)} |")
-    lines = f"{head}{below}".partition("\n\n")[0].splitlines()
-    cells = [[cell.strip() for cell in line.removeprefix("|").removesuffix("|").split("|")] for line in lines]
-    return pd.DataFrame(cells[2:], columns=cells[0])
 
 
 def less(ratio):
     """How far a ratio is below or above 1, in per cent and words."""
     return f"{100.0 * abs(1.0 - ratio):.1f} {'less' if ratio < 1.0 else 'more'}"
-
-
-def reached():
-    """Published numbers of the tester by pair of samples (rows) and quantity (columns): values, whether they agree."""
-    found = table("tables/tester_sensitivity_quick_sensitivity.csv")
-    return found.pivot(index="pair", columns="quantity", values="value"), found.groupby("pair")["reached"].sum()
-
-
-def test_what_seventeen_revolutions_of_the_tester_show():
-    """Volumes after 56 and 184 h with their intervals, growth over the run, convex over plain."""
-    page, results = told("circular_tester.md"), "circular_tester_results_quick.md"
-    lost = rows(results, "hours", "quantity").set_index(["hours", "quantity"])
-    columns = ["ours", "interval low", "interval high"]
-    told_56, told_184 = (lost.loc[(hours, "convex volume"), columns].astype(float) for hours in ("56", "184"))
-    assert "After 56 h the convex sample has lost {:.0f} mm³ ({:.0f} to {:.0f} for".format(*told_56) in page
-    assert "After 184 h it has lost {:.0f} mm³ ({:.0f} to {:.0f}; measured".format(*told_184) in page
-    reduction = lost.loc[("56", "reduction"), columns].astype(float)
-    assert "{:.0f} % less than the plain one ({:.0f} to {:.0f}; measured".format(*reduction) in page
-    rates = rows(results, "surface", "shape", "particle scale", "packings", "revolutions", "rate mm3 per revolution")
-    columns = ["change percent", "change percent low", "change percent high"]
-    plain, convex = (rates.set_index("surface").loc[each, columns].astype(float) for each in ("plain", "convex"))
-    assert (
-        f"falls by {-plain.iloc[0]:.1f} % of the mean ({-plain.iloc[1]:.1f} less to {plain.iloc[2]:.1f} more)" in page
-    )
-    assert "The convex one's grows by {:.0f} % ({:.0f} to {:.0f})".format(*convex) in page
-    ratio = rows(results, "shape", "particle scale", "revolutions", "packings", "ratio").iloc[0]
-    assert (
-        f"it loses {ratio['ratio']} of the plain one's volume ({ratio['ratio low']} to {ratio['ratio high']})" in page
-    )
-
-
-def test_what_presses_on_the_tester_and_how_fast_it_passes():
-    """Weights of level bed and heap (N) at the source's bulk density; velocity over the sample and of the whole bed."""
-    page, results = told("circular_tester.md"), "circular_tester_results_quick.md"
-    newtons_per_mm = 1455.0 * 9.81 * 0.1 * 0.1 / 1e3
-    depth = rows(results, "bed", "settings", "packing")["depth found mm"].astype(float).mean()
-    means = table("tables/circular_tester_quick_steadiness.csv").query("surface == 'plain'").groupby("measure")["mean"]
-    height, speed = 1e3 * means.mean()["bed_height_m"], means.mean()["velocity_m_per_s"]
-    assert f"not of the level bed, {newtons_per_mm * depth:.1f} N" in page
-    assert f"stands {height:.0f} mm high" in page and f": {newtons_per_mm * height:.1f} N. At standard" in page
-    runs = rows(results, "run", "series", "surface").query("series == 'volume' and surface == 'plain'")
-    bed = runs["bed over floor velocity"].astype(float).mean()
-    share = speed / (0.395 * math.pi / 2.0)  # the trough's mean radius (m), 90 degrees a second
-    assert f"{speed:.2f} m/s, {share:.2f} of the trough's speed, where the whole bed has {bed:.2f};" in page
-
-
-def test_how_much_lower_bumps_of_the_tester_are():
-    """Losses of the bumps that the laboratory measured, and over the measured ones of all settings."""
-    page, found = told("circular_tester.md"), table("published/circular_tester_results_quick.csv").set_index("finding")
-    told_of = [found.loc[f"Largest loss of {bump} after 240.3 mm3", "found"] for bump in ("C11", "C13", "C15")]
-    losses = [re.match(r"(\S+) mm \(95 % interval (\S+) to (\S+),", each) for each in told_of]
-    first, second, third = [[float(value) for value in each.groups()] for each in losses]
-    assert "have lost up to {:.2f} mm ({:.2f} to {:.2f}), ".format(*first) in page
-    assert "{:.2f} ({:.2f} to {:.2f}) and {:.2f} ({:.2f} to {:.2f}) of height;".format(*second, *third) in page
-    settings = table("tables/tester_sensitivity_quick_sensitivity.csv").query("quantity.str.startswith('Largest')")
-    measured = settings["published"].str.extract(r"published (\S+)\)")[0].astype(float)
-    over = settings["value"] / measured
-    assert f"losses of bumps ({over.min():.1f} to {over.max():.1f} times the measured ones)" in page
-
-
-def test_what_settings_of_the_tester_reach():
-    """Most and fewest numbers, the fastest layer, and what the settings that are named reach."""
-    values, counts = reached()
-    page, total = told("circular_tester.md"), values.shape[1]
-    slides, volume = values["Sliding over travel, plain"], values["Volume per revolution, plain"]
-    ratio, fastest = values["Convex over plain"], values["Velocity of the lowest layer, plain"].max()
-    both, smooth = ["friction-rolling-bed", "friction-rolling-thin"], "friction-bed-thin"
-    assert (
-        f"No setting reaches more than {counts.max()} of the {total} numbers**, the reference {counts['reference']}."
-        in page
-    )
-    assert f"(up to {fastest:.0f} mm/s of 500)" in page
-    assert "reach sliding over travel, {:.2f} to {:.2f}, and".format(*slides[both]) in page
-    assert "plain sample's volume, {:.0f} and {:.0f} mm³ a revolution".format(*volume[both]) in page
-    assert "the convex one then loses {:.2f} and {:.2f} of it".format(*ratio[both]) in page
-    assert f"reaches sliding over travel ({slides[smooth]:.2f}) and the plain layer's spin" in page
-    assert f"It loses {volume[smooth]:.0f} mm³ a revolution, its convex sample {ratio[smooth]:.2f} of the plain" in page
-
-
-def test_what_moves_the_volume_of_the_tester():
-    """Factors of friction, rolling model, height and thickness with their intervals."""
-    found = table("tables/tester_sensitivity_quick_effects.csv").set_index(["quantity", "change"])
-    lines = found.loc["Volume per revolution, plain"].itertuples()
-    friction, rolling, height, thickness = [(line.factor, line.low, line.high) for line in lines]
-    page, interval = told("circular_tester.md"), "{:.2f} ({:.2f} to {:.2f})".format
-    assert f"{interval(*friction)} and {interval(*rolling).replace(' (', ' times (')} on the plain sample" in page
-    assert (
-        "cannot be said ({:.2f}, {:.2f} to {:.2f}), nor of thickness ({:.2f}, {:.2f} to {:.2f})".format(
-            *height, *thickness
-        )
-        in page
-    )
 
 
 def test_what_a_sphere_of_a_clump_costs():
