@@ -84,6 +84,15 @@ def test_how_studies_took_their_forecasts():
     assert f"{found.min():.1f} to {found.max():.1f} of their forecast" in told("forecast.md")
 
 
+def test_what_the_order_of_particles_saves():
+    """Processor time in the library's order over that in ours, with its range over the repeats."""
+    found = table("benchmarks.csv").query("benchmark == 'solver_speed'").set_index("name")
+    line = found.loc["bed past a convex sample, 19800 particles, the library's order of particles"]
+    assert "one of 19,800 ({:.2f}, {:.2f} to {:.2f})".format(
+        *line[["ratio", "ratio_low", "ratio_high"]].astype(float)
+    ) in told("decisions.md")
+
+
 def test_which_rolling_model_is_nearest_and_when_a_layer_flows():
     """Angles below the source's with their intervals, slopes at which a layer flows, and its creep before."""
     page, results = told("rolling_friction.md"), "rolling_models_results.md"
