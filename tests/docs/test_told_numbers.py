@@ -196,3 +196,18 @@ def test_what_a_travelling_window_changes():
         for each in ("plain", "convex")
     ]
     assert f"| window 150 + 200, time step 0.4, shared bed too | {cells[0]} | {cells[1]} |" in page
+    columns = ["cheaper with its run in", "with its run in low", "with its run in high"]
+    plain, convex = (cost.loc[(each, window), columns].astype(float) for each in ("plain", "convex"))
+    assert (
+        "so {:.0f} times cheaper than the source's set-up with a plain sample (95 %: {:.1f} to".format(*plain) in page
+    )
+    assert "and {:.0f} times with a convex one ({:.1f} to {:.1f})".format(*convex) in page
+
+
+def test_what_sampling_costs():
+    """Work on the wrong triangles at two strides, and what is left at a stride of 1."""
+    found, page = table("sampling_error.csv").set_index("stride_steps"), told("ledger.md")
+    wrong = 100.0 * found["map_error"] / 2.0  # what one triangle has too much another has too little
+    assert 45.0 < wrong[100] < 55.0 and "At 100 steps between samples about half of the work" in page
+    assert f"lies on the wrong triangles, at 10 some {wrong[10]:.0f} %" in page
+    assert f"left at a stride of 1, {100.0 * found.loc[1, 'total_error']:.1f} %" in page
