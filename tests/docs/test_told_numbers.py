@@ -211,3 +211,19 @@ def test_what_sampling_costs():
     assert 45.0 < wrong[100] < 55.0 and "At 100 steps between samples about half of the work" in page
     assert f"lies on the wrong triangles, at 10 some {wrong[10]:.0f} %" in page
     assert f"left at a stride of 1, {100.0 * found.loc[1, 'total_error']:.1f} %" in page
+
+
+def test_what_machines_pages_say_of_sliding_contacts_and_of_a_patterned_liner():
+    """The light of contacts that slide of three machines, and the life of a patterned liner over a plain one's."""
+    page, light = told("equipment.md"), r"\*\*Contacts slide: \w+\.\*\* Friction does (\d+) % or more"
+    lights = [re.search(light, told(f"{machine}_results_quick.md"))[1] for machine in ("chute", "screw", "mill")]
+    assert "has 0.{} on the part where it is least, the [screw](screw_results_quick.md) 0.{},".format(*lights) in page
+    assert f"the [mill](mill_results_quick.md) 0.{lights[2]}." in page
+    life = r"The liner of R9 lasts ([\d.]+) times as long as that of plain \(([\d.]+) to ([\d.]+), 95 %\)"
+    quick, standard = (
+        [float(number) for number in re.search(life, told(f"chute_results_{each}.md")).groups()]
+        for each in ("quick", "standard")
+    )
+    page = told("rolling_friction.md")
+    assert "lasts {:.1f} times as long as the plain one under `own_spin` ({:.1f} to {:.1f})".format(*quick) in page
+    assert "older code, {:.1f} times ({:.1f} to {:.1f})".format(*standard) in page

@@ -96,3 +96,16 @@ def test_what_moves_the_volume_of_the_tester():
         )
         in page
     )
+
+
+def test_when_the_testers_pattern_is_worn_out():
+    """Revolutions until it is gone and until its sample wears faster, what it lost over plain, what caps hold back."""
+    page, results = told("circular_tester.md"), "circular_tester_results_quick.md"
+    gone = rows(results, "run", "last share", "worn out revolution").set_index("run").loc["worn-out"]
+    columns = ["revolutions", "wear coefficient per pa", "carried share percent"]
+    run = rows(results, "run", "series", "surface").set_index("run").loc["worn-out", columns].astype(float)
+    revolutions = run["revolutions"] * run["wear coefficient per pa"] / 5e-9  # those of the study's coefficient
+    assert f"gone after {gone['worn out revolution']} revolutions" in page
+    assert f"From {gone['faster revolution']} on, with {100.0 * float(gone['faster share']):.0f} % of it left" in page
+    assert f"over all {revolutions:.0f} revolutions as much ({gone['lost over plain']})" in page
+    assert f"caps hold back {run['carried share percent']:.0f} % of what the law takes" in page
