@@ -38,6 +38,7 @@ NO_VALUES = (
     *("NULL", "NaN", "None", "n/a", "nan", "null"),
 )
 OTHER_VALUES = ("true", "false", "inf", "infinity")
+SHOWN = 5e-6  # relative: lengths are shown to six digits, and the one that a sentence names is enough
 SAMPLE_ELEMENTS = 4  # elements along the shorter side of a sample; fewer give no map
 
 
@@ -119,6 +120,11 @@ def _is_setting(run: CheckedRun, key: str) -> bool:
 
 def millimetres(metres: float) -> str:
     return f"{metres * 1000.0:.6g} mm"
+
+
+def reaches(length: float, least: float) -> bool:
+    """Return whether a length (m) is at least another one, as `millimetres` shows that."""
+    return length >= least - SHOWN * abs(least)
 
 
 def model_properties_given(run: CheckedRun) -> Fault | None:

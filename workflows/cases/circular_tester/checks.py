@@ -7,7 +7,15 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from bulkwear.postproc.mesh import PLAIN
-from bulkwear.workflows.cases.circular_tester.decks import CHANNEL, channel_length, half_width, mean_radius
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.cases.circular_tester.decks import (
+    CHANNEL,
+    TROUGH_ELEMENT,
+    bed_length,
+    channel_length,
+    half_width,
+    mean_radius,
+)
 from bulkwear.workflows.config.patterns import dimension_columns
 from bulkwear.workflows.config.run_checks import (
     CheckedRun,
@@ -18,14 +26,24 @@ from bulkwear.workflows.config.run_checks import (
     millimetres,
     pattern_fits,
     physical_modulus_known,
+    reaches,
 )
 from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
 VOLUME, VARIED = "volume", "varied"  # series of the design
 ALONE = ("row", "surface")  # columns in which the rows of a pair differ
 LEAST_LAYERS = 3.0  # of particles over the sample and under it: fewer are no bed
+# -, largest diameters in the quarter of a channel whose level is looked at: shorter ones often hold no particle.
+LEVEL_QUARTER_DIAMETERS = 2.0
 LEVEL_DIAMETERS = 0.5  # -, of bed and consolidator apart, in median diameters: the plate cuts no layer off, misses none
-SIDE_DIAMETERS = 2.0  # -, room between sample and side walls, in largest diameters: particles pass there without a jam
+# -, room beside the sample and under it, in largest diameters: particles pass there without a jam.
+SIDE_DIAMETERS = 2.0
+# -, rise of the consolidator, in largest diameters: it pushes particles that lie on the bed by their middle.
+PUSHED_DIAMETERS = 0.5
+# -, how far the chords of a ring's walls lie inside their circle, in largest diameters: at 0.1 poured particles, whose
+# centres keep 0.6 off, begin to touch them; at 0.36 they were kicked, at 0.46 lost.
+CHORD_DIAMETERS = 0.35
+LEAST_STEPS = 10.0  # in which the trough passes the smallest particle; in fewer a contact is over before it is resolved
 ROUNDING = 1e-9  # relative; of revolutions times cycles
 
 
@@ -51,8 +69,12 @@ def sample_between_walls(run: CheckedRun) -> Fault | None:
         outer, mean = tester["outer_radius_m"] - room, mean_radius(tester)
         corner = math.sqrt(max(outer**2 - (0.5 * sample["length_m"]) ** 2, 0.0)) - mean
         largest = min(largest, 2.0 * corner)
-    if sample["width_m"] <= largest:
+    if reaches(largest, sample["width_m"]):
         return None
+    if largest <= 0.0:
+        least = tester["inner_radius_m"] + sample["width_m"] + 2.0 * room
+        reason = "so that two of the largest particles pass on either side of the sample"
+        return "tester.outer_radius_mm", f"at least {millimetres(least)}, {reason}"
     return (
         "sample.width_mm",
         f"at most {millimetres(largest)}, so that two of the largest particles ({millimetres(0.5 * room)}) pass "
@@ -63,11 +85,67 @@ def sample_between_walls(run: CheckedRun) -> Fault | None:
 def sample_in_channel(run: CheckedRun) -> Fault | None:
     """A channel is longer than the sample and the consolidator, with room for the bed to close again between them."""
     tester, sample = run.parameters["tester"], run.parameters["sample"]
-    least = 2.0 * (sample["length_m"] + tester["consolidator_ramp_m"] + tester["consolidator_flat_m"])
-    if tester["shape"] != CHANNEL or channel_length(tester) >= least:
+    twice = 2.0 * (sample["length_m"] + tester["consolidator_ramp_m"] + tester["consolidator_flat_m"])
+    quarters = 4.0 * LEVEL_QUARTER_DIAMETERS * max(run.parameters["particle"]["diameters_m"])
+    if tester["shape"] != CHANNEL or channel_length(tester) >= max(twice, quarters):
         return None
-    angle = math.degrees(least / mean_radius(tester))
-    return "tester.channel_deg", f"at least {angle:.4g} degrees, twice the length of sample and consolidator"
+    angle = _rounded_up(math.degrees(max(twice, quarters) / mean_radius(tester)))
+    reason = "twice the length of sample and consolidator" if twice >= quarters else "eight of the largest particles"
+    return "tester.channel_deg", f"at least {angle:g} degrees, {reason}"
+
+
+def _rounded_up(value: float) -> float:
+    """Return a least value to two decimals, which is enough where it is given."""
+    return math.ceil(100.0 * value * (1.0 - ROUNDING)) / 100.0
+
+
+def ring_is_round(run: CheckedRun) -> Fault | None:
+    """A ring, whose walls are chords, is so round that no particle is poured into its walls."""
+    tester, largest = run.parameters["tester"], max(run.parameters["particle"]["diameters_m"])
+    least = TROUGH_ELEMENT**2 / (8.0 * CHORD_DIAMETERS * largest)
+    if tester["shape"] == CHANNEL or reaches(tester["outer_radius_m"], least):
+        return None
+    return "tester.outer_radius_mm", (
+        f"at least {millimetres(least)} with tester.shape: ring, whose walls are chords of"
+        f" {millimetres(TROUGH_ELEMENT)}, in which smaller particles would be poured, or tester.shape: channel"
+    )
+
+
+def speed_resolved(run: CheckedRun) -> Fault | None:
+    """The trough passes the smallest particle in ten time steps or more."""
+    step, particle = run.parameters["derived"]["largest_time_step_s"], run.parameters["particle"]
+    fastest = min(particle["diameters_m"]) / (LEAST_STEPS * step)
+    return _too_fast(run, fastest / mean_radius(run.parameters["tester"]), "ten time steps for the smallest particle")
+
+
+def bed_stays_down(run: CheckedRun) -> Fault | None:
+    """At the outer wall of a ring the bed is pressed on the floor more than it is thrown outwards."""
+    tester = run.parameters["tester"]
+    if tester["shape"] == CHANNEL:
+        return None
+    reason = "where the centrifugal acceleration at tester.outer_radius_mm is that of gravity"
+    return _too_fast(run, math.sqrt(GRAVITY / tester["outer_radius_m"]), reason)
+
+
+def _too_fast(run: CheckedRun, most: float, reason: str) -> Fault | None:
+    """Return the fault of a trough that turns faster than so many rad/s."""
+    if run.parameters["sliding"]["angular_speed_rad_per_s"] <= most:
+        return None
+    return "sliding.angular_speed_deg_per_s", f"at most {math.floor(math.degrees(most))} deg/s, {reason}"
+
+
+def level_measured(run: CheckedRun) -> Fault | None:
+    """The quarter of the bed whose level is measured has left the consolidator a revolution before runs start."""
+    tester, sliding = run.parameters["tester"], run.parameters["sliding"]
+    quarter = 0.25 * bed_length(tester) / mean_radius(tester)
+    least = _rounded_up(1.0 + quarter / sliding["revolution_rad"])
+    if sliding["steady_revolutions"] >= least:
+        return None
+    turn = math.degrees(sliding["revolution_rad"])
+    return "sliding.steady_revolutions", (
+        f"at least {least:g} where sliding.revolution_deg is {turn:.6g}: a quarter of the bed has then left the"
+        " consolidator before the last revolution, over which its level is measured"
+    )
 
 
 def consolidator_in_ring(run: CheckedRun) -> Fault | None:
@@ -76,11 +154,11 @@ def consolidator_in_ring(run: CheckedRun) -> Fault | None:
     if tester["shape"] == CHANNEL:
         return None
     flat, most = tester["consolidator_flat_m"], tester["inner_radius_m"]
-    if flat > most:  # the level is looked at beyond a chord that far from the axis, see past_consolidator
+    if not reaches(most, flat):  # the level is looked at beyond a chord that far from the axis, see past_consolidator
         reason = "so that the bed is there in all its width where its level is looked at behind it"
         return "tester.consolidator_flat_mm", f"at most {millimetres(most)}, tester.inner_radius_mm, {reason}"
     found, most = sample["length_m"] + tester["consolidator_ramp_m"] + flat, math.pi * mean_radius(tester)
-    if found <= most:
+    if reaches(most, found):
         return None
     return "tester.consolidator_ramp_mm", (
         f"a length that makes at most {millimetres(most)}, half of the way round at the mean radius, with"
@@ -102,39 +180,49 @@ def enough_layers_over(run: CheckedRun) -> Fault | None:
     """The bed over the sample's higher end has three layers of particles."""
     _, highest = _ends(run, 0.0, 0.0)
     least = LEAST_LAYERS * run.parameters["particle"]["median_diameter_m"] + highest
-    if run.parameters["tester"]["depth_m"] >= least:
+    if reaches(run.parameters["tester"]["depth_m"], least):
         return None
     return "tester.depth_mm", f"at least {millimetres(least)}, three layers of particles over the sample's higher end"
 
 
 def enough_layers_under(run: CheckedRun) -> Fault | None:
-    """The bed under the sample's lower end has three layers of particles, so that it flows there too."""
-    tester, sample = run.parameters["tester"], run.parameters["sample"]
+    """The bed under the sample's lower end has three layers of particles, and room for two of the largest, so that it
+    flows there too.
+    """
+    tester, sample, particle = (run.parameters[name] for name in ("tester", "sample", "particle"))
     lowest, _ = _ends(run, 0.0, sample["thickness_m"])
-    least = tester["depth_m"] - lowest + LEAST_LAYERS * run.parameters["particle"]["median_diameter_m"]
-    if tester["bed_height_m"] >= least:
+    layers, pair = LEAST_LAYERS * particle["median_diameter_m"], SIDE_DIAMETERS * max(particle["diameters_m"])
+    least = tester["depth_m"] - lowest + max(layers, pair)
+    if reaches(tester["bed_height_m"], least):
         return None
-    return (
-        "tester.bed_height_mm",
-        f"at least {millimetres(least)}, three layers of particles under the sample's lower end",
-    )
+    what = "three layers of particles" if layers >= pair else "two of the largest particles"
+    return "tester.bed_height_mm", f"at least {millimetres(least)}, {what} under the sample's lower end"
+
+
+def consolidator_pushes(run: CheckedRun) -> Fault | None:
+    """The consolidator's upper edge is higher than the middle of particles that lie on the levelled bed."""
+    least = PUSHED_DIAMETERS * max(run.parameters["particle"]["diameters_m"])
+    if reaches(run.parameters["tester"]["consolidator_rise_m"], least):
+        return None
+    return "tester.consolidator_rise_mm", f"at least {millimetres(least)}, the radius of the largest particle"
 
 
 def consolidator_on_bed(run: CheckedRun) -> Fault | None:
     """The consolidator levels above the highest point of the sample, and of the particles that lie on it."""
     tester = run.parameters["tester"]
     _, highest = _ends(run, run.parameters["derived"]["headroom_m"], 0.0)
-    least = tester["bed_height_m"] - tester["depth_m"] + highest
-    if tester["consolidator_level_m"] > least:
+    least = tester["bed_height_m"] + highest - tester["consolidator_level_m"]
+    if tester["depth_m"] > least:
         return None
-    return "tester.consolidator_level_mm", f"above {millimetres(least)}, the sample's highest point"
+    return "tester.depth_mm", f"above {millimetres(least)}, so that the sample's top is under the consolidator"
 
 
 def consolidator_levels_bed(run: CheckedRun) -> Fault | None:
     """The consolidator levels the bed at its height: it comes down on it and does not start inside it."""
     tester = run.parameters["tester"]
     height, apart = tester["bed_height_m"], LEVEL_DIAMETERS * run.parameters["particle"]["median_diameter_m"]
-    if abs(tester["consolidator_level_m"] - height) <= apart:
+    level = tester["consolidator_level_m"]
+    if reaches(level, height - apart) and reaches(height + apart, level):
         return None
     ends = " to ".join(millimetres(height + side * apart) for side in (-1.0, 1.0))
     return "tester.consolidator_level_mm", f"{ends}, the bed's height (tester.bed_height_mm) within half a particle"
@@ -170,16 +258,21 @@ TESTER_CHECKS = (
     sample_between_walls,
     sample_in_channel,
     consolidator_in_ring,
+    ring_is_round,
     enough_layers_over,
     enough_layers_under,
-    consolidator_on_bed,
     consolidator_levels_bed,
+    consolidator_on_bed,
+    consolidator_pushes,
     element_resolves_sample,
     pattern_fits,
     element_resolves_pattern,
     pattern_in_sample,
     whole_cycles,
     cycle_long_enough,
+    speed_resolved,
+    bed_stays_down,
+    level_measured,
     physical_modulus_known,
 )
 

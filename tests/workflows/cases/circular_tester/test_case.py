@@ -6,11 +6,14 @@ import re
 import numpy as np
 import pytest
 
-from bulkwear.meshes.tester import placed
+from bulkwear.meshes.tester import placed, turn_angles
 from bulkwear.postproc.mesh import area_vectors, edge_lengths_per_triangle, enclosed_volume
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
+from bulkwear.workflows.cases.circular_tester.checks import enough_layers_under
 from bulkwear.workflows.cases.circular_tester.work import surface_triangles
 from bulkwear.workflows.config.design import ConfigError, load_study
+from bulkwear.workflows.config.layers import Layer
+from bulkwear.workflows.config.run_checks import CheckedRun
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.chain import Chain, bed_deck_text, deck_text, write_bed
 from bulkwear.workflows.engine.schedule import known_spans
@@ -195,8 +198,20 @@ def test_the_trough_is_closed_and_holds_the_bed(tmp_path):
             "tester.bed_height_mm is 70 for row plain, allowed is at least 71.4956 mm, three",
         ),
         (
+            {"tester": {"depth_mm": 33}, "pattern": {"height_mm": 33}},
+            "depth_mm is 33 for row convex, allowed is above 34.9491 mm, so that the sample's top is under",
+        ),
+        (
             {"tester": {"consolidator_level_mm": 37}},
-            "consolidator_level_mm is 37 for row plain, allowed is above 38.9",
+            "consolidator_level_mm is 37 for row plain, allowed is 66.7 mm to 77.3 mm, the bed's height",
+        ),
+        (
+            {"tester": {"consolidator_rise_mm": 6}},
+            "consolidator_rise_mm is 6 for row plain, allowed is at least 6.36 mm, the radius of the largest particle",
+        ),
+        (
+            {"particle_scale": 20},
+            "tester.outer_radius_mm is 196 for row plain, allowed is at least 394.4 mm, so that two",
         ),
         (
             {"tester": {"bed_height_mm": 80}},
@@ -219,6 +234,71 @@ def test_what_cannot_be_is_refused_in_one_sentence(changes, sentence, monkeypatc
     with pytest.raises(ConfigError) as fault:
         tiny_tester(**changes)
     assert sentence in str(fault.value)
+
+
+SHORT = {"tester": {"channel_deg": 28, "consolidator_ramp_mm": 10, "consolidator_flat_mm": 5}}
+RING = {"shape": "ring"}
+
+
+@pytest.mark.parametrize(
+    ("key", "wrong", "enough", "changes"),
+    [
+        # its quarter holds two of the largest particles: 8 of 12.72 mm over 148 mm of mean radius
+        ("tester.channel_deg", 39.3, 39.4, {"sample": {"width_mm": 20, "length_mm": 20}, **SHORT}),
+        # chords of 50 mm lie 0.35 of 6.36 mm inside such a circle
+        ("tester.outer_radius_mm", 140, 141, {"particle_scale": 2, "tester": {**RING, "inner_radius_mm": 60}}),
+        # ten steps of 3.45e-5 s for a particle of 8.48 mm at 148 mm
+        ("sliding.angular_speed_deg_per_s", 9600, 9400, {"sliding": {"revolution_deg": 150}}),
+        ("sliding.angular_speed_deg_per_s", 406, 405, {"tester": RING}),  # 7.07 rad/s: gravity at 196 mm
+        ("sliding.steady_revolutions", 1.46, 1.47, {}),  # the last one, and a quarter of 56 degrees in ones of 30
+        ("sliding.steady_revolutions", 3.99, 4, {"tester": RING}),
+    ],
+)
+def test_bounds_that_machine_and_particles_set(key, wrong, enough, changes):
+    """A little beyond each is refused, in one sentence; the bound that it names is enough."""
+    block, _, name = key.partition(".")
+
+    def tester(value):
+        return tiny_tester(**{**changes, block: {**changes.get(block, {}), name: value}})
+
+    with pytest.raises(ConfigError, match=rf"{re.escape(key)} is {wrong} for row plain, allowed is at") as fault:
+        tester(wrong)
+    assert tester(enough).runs
+    assert tester(float(re.search(r"allowed is at (?:least|most) ([\d.]+)", str(fault.value))[1])).runs
+
+
+@pytest.mark.parametrize("incline", [-20, -10, 4, 15, 23, 30])
+def test_the_length_that_a_sentence_names_is_enough(incline):
+    """Though it is rounded there: bed and consolidator of a tilted sample, as high as they are asked to be."""
+    tester = {"incline_deg": incline}
+    for key in ("bed_height_mm", "consolidator_level_mm"):
+        changes = {"fidelity": "quick", "rows": ["plain"], "packings": 1, "tester": tester}
+        try:
+            load_study("circular_tester", overrides=changes)
+        except ConfigError as fault:
+            tester[key] = float(
+                re.search(rf"{key} is 150 for row plain, allowed is (?:at least )?([\d.]+)", str(fault))[1]
+            )
+    assert load_study("circular_tester", overrides=changes).runs and "bed_height_mm" in tester
+
+
+def test_the_largest_particle_passes_under_the_sample():
+    """Of widely spread sizes two of the largest are more than three of the median."""
+    run = tiny_tester().run("plain")
+    parameters = run.parameters | {"particle": run.parameters["particle"] | {"diameters_m": [0.005, 0.02]}}
+    key, allowed = enough_layers_under(CheckedRun((), {}, Layer("row", {}), parameters))
+    least = 35 + 20 * math.sin(math.radians(2)) + 4 * math.cos(math.radians(2)) + 2 * 20
+    assert key == "tester.bed_height_mm"
+    assert allowed == f"at least {least:.6g} mm, two of the largest particles under the sample's lower end"
+
+
+def test_particles_are_poured_into_the_trough():
+    """Of the smallest ring allowed centres lie within the chords of its outer wall, by less than a radius."""
+    tester = {**RING, "inner_radius_mm": 60, "outer_radius_mm": 141}
+    bed = tiny_tester(particle_scale=2, tester=tester).beds["bed_plain"]
+    chord = math.pi / (len(turn_angles(bed["outer_radius_m"], tester_deck.TROUGH_ELEMENT)) - 1)
+    inside = bed["outer_radius_m"] * math.cos(chord) - tester_deck.tester_bed(bed)["outer_fill_radius_m"]
+    assert 0.25 - 1e-3 < inside / max(bed["particle"]["diameters_m"]) < 0.5
 
 
 def test_a_tilt_takes_room_over_and_under_the_sample():
