@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -35,6 +36,13 @@ DIGITS = 12  # of a hash, in the name of a folder
 BY = "simulated_by"  # column of a table of simulations: version of the code
 Asked, Answer = TypeVar("Asked"), TypeVar("Answer")
 FIRST_SEED = 20220317  # of sliding samples in the studies; further packings are SEED_SPACING apart, as theirs
+
+
+def at_least_one(text: str) -> int:
+    """Return a number of a command line, as of packings. Raises ArgumentTypeError where it is none from 1 on."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"found {text!r}, allowed is a whole number from 1 on")
+    return int(text)
 
 
 def changed(run: Run, change: Mapping[str, Any]) -> Run:

@@ -25,7 +25,7 @@ import pandas as pd
 from benchmarks.plots.rolling_models import packings_by_model
 from benchmarks.rolling_models import CALIBRATED, SHEAR_BOX, wanted
 from benchmarks.rolling_page import MODELS, less
-from benchmarks.runs import BY, side_by_side, simulated_by, with_earlier
+from benchmarks.runs import BY, at_least_one, side_by_side, simulated_by, with_earlier
 from bulkwear.postproc.plots.style import save, save_small
 from bulkwear.postproc.readers.solver_log import last_step
 from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, estimate
@@ -259,7 +259,7 @@ def told_of(row: Mapping[str, Any], root: Path) -> dict[str, Any]:
 
 def angles(runs: pd.DataFrame) -> dict[str, pd.Series]:
     """Return the flow angles (degrees) of each model by packing."""
-    of_packings = runs.dropna(subset=["flow_angle_deg"]).set_index("packing")
+    of_packings = runs.reindex(columns=[*KEYS, "flow_angle_deg"]).dropna().set_index("packing")
     return {model: of["flow_angle_deg"] for model, of in of_packings.groupby("model", sort=False)}
 
 
@@ -372,14 +372,15 @@ def main() -> None:
     """Simulate what is missing, then write table, figure and page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--output", type=Path, default=Path("docs"))
-    parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each model, else {PACKINGS}")
+    parser.add_argument("--packings", type=at_least_one, default=PACKINGS, help=f"of each model, else {PACKINGS}")
     parser.add_argument("--models", nargs="+", choices=MODELS, default=MODELS, help="else all")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/tilted_bed"))
-    parser.add_argument("--cores", type=int, default=1, help="simulations side by side")
+    parser.add_argument("--cores", type=at_least_one, default=1, help="simulations side by side")
     parser.add_argument("--finished", action="store_true", help="simulate nothing, take what is finished")
     parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
     given = parser.parse_args()
     file = given.output / FILE
+    given.output.mkdir(parents=True, exist_ok=True)
     if not given.redraw:
         rows = wanted(given.packings, given.models, (SHEAR_BOX,), (CALIBRATED,))
         rows = [row for row in rows if is_finished(row, given.folder)] if given.finished else rows
@@ -387,7 +388,11 @@ def main() -> None:
             parser.error(f"{given.folder}: no layer asked for is finished; without --finished they are tilted.")
         found = all_tilted(rows, given.folder, given.cores, alone=not given.finished)
         with_earlier(file, found, KEYS).sort_values(KEYS).to_csv(file, index=False, float_format="%.6g")
-    print(publish(given.output, pd.read_csv(file)), flush=True)
+    elif not file.is_file():
+        parser.error(f"{file} is missing, allowed is --redraw where an earlier run has written it.")
+    if not means(runs := pd.read_csv(file)):
+        parser.error(f"{file}: no layer tells at which slope it flows: {' '.join(refused(runs))}")
+    print(publish(given.output, runs), flush=True)
 
 
 if __name__ == "__main__":

@@ -97,6 +97,41 @@ def test_finished_layers_alone_need_one(tmp_path, monkeypatch, capsys):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["--packings", "0"], "argument --packings: found '0', allowed is a whole number from 1 on"),
+        (["--packings", "2.5"], "argument --packings: found '2.5', allowed is"),
+        (["--cores", "-1"], "argument --cores: found '-1', allowed is a whole number from 1 on"),
+        (["--redraw"], "tilted_bed.csv is missing, allowed is --redraw where an earlier run has written it"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(given, said, tmp_path, monkeypatch, capsys):
+    """In a sentence, before anything is simulated."""
+    monkeypatch.setattr(sys, "argv", ["tilted_bed", *given, "--output", str(tmp_path), "--folder", str(tmp_path)])
+    monkeypatch.setattr(tilted_bed, "all_tilted", None)
+    with pytest.raises(SystemExit):
+        tilted_bed.main()
+    assert said in capsys.readouterr().err
+
+
+def test_layers_of_which_none_flows_make_no_page(tmp_path, monkeypatch, capsys):
+    """Their reasons are told and stay in the table, in a folder that is made before anything is simulated."""
+    output = tmp_path / "new"
+
+    def none_flows(*_, **__):
+        assert output.is_dir()
+        return pd.DataFrame([{"model": "cdt", "packing": 1, "refused": "the bed does not flow at 60.0 degrees."}])
+
+    monkeypatch.setattr(sys, "argv", ["tilted_bed", "--output", str(output)])
+    monkeypatch.setattr(tilted_bed, "all_tilted", none_flows)
+    with pytest.raises(SystemExit):
+        tilted_bed.main()
+    said = "no layer tells at which slope it flows: `cdt`, packing 1: the bed does not flow at 60.0 degrees."
+    assert said in capsys.readouterr().err
+    assert [file.name for file in output.iterdir()] == ["tilted_bed.csv"]
+
+
 def test_a_layer_that_tells_nothing_ends_no_other(tmp_path, monkeypatch):
     """It has its reason in the table and on the page."""
 
