@@ -1,4 +1,4 @@
-"""Check of where the feed of a machine goes first: it meets a part before an outlet, and while the run lasts.
+"""Check of where the feed of a machine goes first: to a part before an outlet, while the run lasts, none into nothing.
 
 The feed is followed as free flight from places of its inlet. A part that moves is taken for all of the box in which it
 moves: it may meet the feed there at any time.
@@ -14,6 +14,7 @@ import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.workflows.cases.equipment.decks import longest_s, moving_mesh
+from bulkwear.workflows.cases.equipment.placing import largest_diameter
 from bulkwear.workflows.cases.equipment.surfaces import rectangle, room_needed
 from bulkwear.workflows.config.layers import ConfigError
 
@@ -24,7 +25,8 @@ RIM = 1e-9  # -, of the sides of a triangle
 
 
 def check_stream(run: Mapping[str, Any], parts: Sequence[SurfaceMesh]) -> None:
-    """Raise ConfigError for a feed that falls past all parts, or gets to none within the longest run.
+    """Raise ConfigError for a feed that falls past all parts, gets to none within the longest run, or of which some
+    falls past outlets too.
 
     run: the sections of its parameters that its surface depends on; parts: the surface of each
     """
@@ -47,6 +49,32 @@ def check_stream(run: Mapping[str, Any], parts: Sequence[SurfaceMesh]) -> None:
         raise ConfigError(f"{found} falls on a part: it falls past all of them, {(way or ['into nothing'])[0]}.")
     if (time := met[before].min()) > (longest := longest_s(run)):
         raise ConfigError(f"{found} gets to a part within the longest run, {longest:.3g} s: it takes {time:.3g} s.")
+    if not np.isfinite(np.min([met, *gone.values()], axis=0)).all():
+        _check_none_lost(run, parts, found)
+
+
+def _check_none_lost(run: Mapping[str, Any], parts: Sequence[SurfaceMesh], found: str) -> None:
+    """Raise ConfigError for a feed of which some falls past all parts and outlets: the first stray stops the run.
+
+    found: begin of the sentence. What grazes an edge by less than the largest radius is met.
+    """
+    inlet, diameter = run["inlet"], largest_diameter(run)
+    velocity = np.asarray(inlet["velocity_m_per_s"], dtype=np.float64)
+    lost = all_of_it = _places({**inlet, "size_m": [max(side - diameter, 0.0) for side in inlet["size_m"]]})
+    corners = rectangle({**inlet, "size_m": [diameter, diameter]}).points - np.asarray(inlet["centre_m"])
+    for beside in np.concatenate([np.zeros((1, 3)), corners, 0.5 * (corners + np.roll(corners, 1, axis=0))]):
+        starts = lost + beside - BEFORE * velocity
+        ends = [_met(run, part, starts, velocity, mesh) for part, mesh in zip(run["parts"], parts, strict=True)]
+        ends += [first_met(starts, velocity, rectangle(given)) for given in (run["outlets"] or {}).values()]
+        lost = lost[~np.isfinite(np.min(ends, axis=0))]
+        if not len(lost):
+            return
+    place = ", ".join(f"{1e3 * value + 0.0:.4g}" for value in lost[0])
+    raise ConfigError(
+        f"{found} all falls on a part or through an outlet: {len(lost)} of {len(all_of_it)} flights, as from ({place})"
+        " mm, meet neither, and a particle that leaves elsewhere stops the run: move or narrow the inlet, or widen a"
+        " part or an outlet."
+    )
 
 
 def _check_filling_falls(run: Mapping[str, Any], parts: Sequence[SurfaceMesh]) -> None:

@@ -16,12 +16,19 @@ G = 9.81  # m/s2
 INLET = {"centre_m": [0.0, 0.0, 1.0], "normal": [0, 0, -1], "size_m": [0.1, 0.1], "velocity_m_per_s": [0.0, 0.0, -1.0]}
 BELOW = {"centre_m": [0.0, 0.0, -1.0], "normal": [0, 0, -1], "size_m": [9.0, 9.0]}
 DERIVED = {"run_in_steps": 1000, "travel_steps": 9000, "time_step_s": 1e-4}  # 1 s
+PARTICLE = {"diameters_m": [0.004, 0.008]}
 FLOOR = {"centre_m": [0.0, 0.0, 0.0], "normal": [0, 0, 1], "size_m": [0.4, 0.4]}
 TURN = {"kind": "rotation", "point_m": [0.0, 0.0, 0.0], "axis": [0.0, 1.0, 0.0], "speed_rad_per_s": 6.0}
 
 
 def checked(inlet=INLET, outlets=BELOW, floor=FLOOR, motion=None, **sections):
-    run = {"inlet": inlet, "outlets": outlets and {"below": outlets}, "periodic": None, "derived": DERIVED}
+    run = {
+        "inlet": inlet,
+        "outlets": outlets and {"below": outlets},
+        "periodic": None,
+        "derived": DERIVED,
+        "particle": PARTICLE,
+    }
     return check_stream({**run, "parts": [{"name": "floor", "motion": motion}], **sections}, [rectangle(floor)])
 
 
@@ -71,6 +78,40 @@ def test_feed_that_falls_past_all_parts():
         assert message_of(outlets={**BELOW, "centre_m": [0.0, 0.0, height]}).startswith(past)
     nothing = message_of(floor={**FLOOR, "centre_m": [0.26, 0.0, 0.0]}, outlets=None)
     assert nothing.endswith("all of them, into nothing.")
+
+
+def test_feed_of_which_some_falls_into_nothing():
+    """Past a floor that is half below the inlet, and past an outlet as narrow: the first stray would stop the run.
+
+    A wider outlet takes it; so does a floor whose edge the outermost particles touch.
+    """
+    narrow = {**BELOW, "size_m": [0.05, 9.0]}
+    half = {**FLOOR, "centre_m": [0.21, 0.0, 0.0]}
+    assert message_of(floor=half, outlets={**narrow, "centre_m": [0.1, 0.0, -1.0]}) == (
+        "inlet.centre_mm is (0, 0, 1000) mm, allowed is a place from which what comes in all falls on a part or through"
+        " an outlet: 45 of 81 flights, as from (-46, 46, 1000) mm, meet neither, and a particle that leaves elsewhere"
+        " stops the run: move or narrow the inlet, or widen a part or an outlet."
+    )
+    assert checked(floor=half) is None
+    assert checked(floor={**FLOOR, "size_m": [0.086, 0.4]}, outlets=narrow) is None
+
+
+def test_feed_does_not_fall_through_a_gap_that_is_narrower_than_a_particle():
+    """Between two halves of a floor, as through a joint; a gap as wide as two particles lets some through."""
+    narrow = {**BELOW, "size_m": [0.05, 9.0], "centre_m": [1.0, 0.0, -1.0]}
+    for gap, passes in ((0.006, True), (0.016, False)):
+        halves = [rectangle({**FLOOR, "centre_m": [side * (0.2 + 0.5 * gap), 0.0, 0.0]}) for side in (-1.0, 1.0)]
+        floor = SurfaceMesh(
+            np.concatenate([half.points for half in halves]),
+            np.concatenate([halves[0].triangles + 4 * k for k in (0, 1)]),
+        )
+        run = {"inlet": INLET, "outlets": {"below": narrow}, "periodic": None, "derived": DERIVED, "particle": PARTICLE}
+        machine = {**run, "parts": [{"name": "floor", "motion": None}]}
+        if passes:
+            assert check_stream(machine, [floor]) is None
+        else:
+            with pytest.raises(ConfigError, match="9 of 81 flights, as from"):
+                check_stream(machine, [floor])
 
 
 def test_a_filling_that_falls_past_all_parts():
