@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.equipment.motions import (
     FREE,
     NEEDED,
@@ -25,6 +26,7 @@ from bulkwear.workflows.config.units import to_si
 TINY = 1e-12  # of a component of a direction; its square is lost beside 1
 STILL = 1e-6  # rad/s, rad, m/s or m: a part that moves by no more stands still for as long as anything is simulated
 FEWEST_STEPS_OF_PERIOD = 20.0  # in which a part swings once
+FELT = 0.01  # -, of the smallest diameter or of gravity: by less a swing hardly moves particles, as of one given in m
 PART_OF_SWING = 0.05  # of a block, by which it may differ from whole swings
 SECONDS_PER_MINUTE = 60.0
 LEAST_TURNS = 1.0 - 1e-3  # of a part that wears, in the longest run
@@ -102,6 +104,21 @@ def swings_are_seen(run: CheckedRun) -> Fault | None:
     return None
 
 
+def swings_are_felt(run: CheckedRun) -> Fault | None:
+    """What swings does so by a hundredth of the smallest diameter, or pushes with a hundredth of gravity, or more."""
+    smallest = min(run.parameters["particle"]["diameters_m"])
+    for part, motion in _moving(run):
+        if motion["kind"] != "oscillation":
+            continue
+        least = FELT * min(smallest, GRAVITY * (motion["period_s"] / (2.0 * math.pi)) ** 2)
+        if (found := float(np.linalg.norm(motion["amplitude_m"]))) < least:
+            return f"parts.{part}.motion.amplitude_mm", (
+                f"at least {1e3 * least:.3g} mm long at {motion['period_s']:g} s, a hundredth of the smallest diameter"
+                f" or of gravity, found {1e3 * found:.3g} mm: it would hardly move a particle; lengths are in mm"
+            )
+    return None
+
+
 def blocks_are_whole_swings(run: CheckedRun) -> Fault | None:
     """A block has whole swings of each part that swings, or so many that a part of one hardly counts."""
     block_s = run.parameters["sampling"]["block_s"]
@@ -143,5 +160,5 @@ def _moving(run: CheckedRun) -> list[tuple[str, Mapping[str, Any]]]:
     return [(part["name"], part["motion"]) for part in run.parameters["parts"] if part["motion"]]
 
 
-MOTION_CHECKS: tuple[Check, ...] = (motions_complete, motions_move, swings_are_seen)
+MOTION_CHECKS: tuple[Check, ...] = (motions_complete, motions_move, swings_are_seen, swings_are_felt)
 COUNTED_MOTION_CHECKS: tuple[Check, ...] = (blocks_are_whole_swings, turned_once)  # of blocks that are long enough

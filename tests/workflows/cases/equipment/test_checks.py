@@ -221,6 +221,16 @@ MOTIONS = [
         )
         for period in (0.002, 2)
     ),
+    (
+        motion(kind="oscillation", amplitude_mm=[0.003, 0, 0.004], period_s=0.05),
+        "parts.plate.motion.amplitude_mm is [0.003, 0, 0.004]",
+        "at least 0.00621 mm long at 0.05 s, a hundredth of the smallest diameter or of gravity, found 0.005 mm",
+    ),
+    (
+        motion(kind="oscillation", amplitude_mm=[0, 0.05, 0], period_s=0.15),
+        "parts.plate.motion.amplitude_mm is [0, 0.05, 0]",
+        "at least 0.0559 mm long",
+    ),
     *(
         (
             motion(**SWINGS, period_s=BLOCK_S / swings),
