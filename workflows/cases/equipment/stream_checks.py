@@ -14,7 +14,8 @@ import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.workflows.cases.equipment.decks import longest_s, moving_mesh
-from bulkwear.workflows.cases.equipment.placing import largest_diameter
+from bulkwear.workflows.cases.equipment.placing import filling_box, largest_diameter
+from bulkwear.workflows.cases.equipment.room_checks import LOOKING_UP
 from bulkwear.workflows.cases.equipment.surfaces import rectangle, room_needed
 from bulkwear.workflows.config.layers import ConfigError
 
@@ -26,10 +27,11 @@ RIM = 1e-9  # -, of the sides of a triangle
 
 def check_stream(run: Mapping[str, Any], parts: Sequence[SurfaceMesh]) -> None:
     """Raise ConfigError for a feed that falls past all parts, gets to none within the longest run, or of which some
-    falls past outlets too.
+    falls past outlets too, and for an outlet that nothing falls through along its normal.
 
     run: the sections of its parameters that its surface depends on; parts: the surface of each
     """
+    _check_outlets_look_down(run, parts)
     inlet = run["inlet"]
     if not inlet:
         _check_filling_falls(run, parts)
@@ -51,6 +53,23 @@ def check_stream(run: Mapping[str, Any], parts: Sequence[SurfaceMesh]) -> None:
         raise ConfigError(f"{found} gets to a part within the longest run, {longest:.3g} s: it takes {time:.3g} s.")
     if not np.isfinite(np.min([met, *gone.values()], axis=0)).all():
         _check_none_lost(run, parts, found)
+
+
+def _check_outlets_look_down(run: Mapping[str, Any], parts: Sequence[SurfaceMesh]) -> None:
+    """Raise ConfigError for an outlet that looks up from below all else: nothing throws material through it."""
+    lows = [
+        room_needed(mesh.points, part, longest_s(run))[0][2] for part, mesh in zip(run["parts"], parts, strict=True)
+    ]
+    lows += [rectangle(run["inlet"]).points[:, 2].min()] if run["inlet"] else []
+    lows += [filling_box(run)[0][2]] if run.get("filling") else []
+    for name, given in (run["outlets"] or {}).items():
+        upward = given["normal"][2] / np.linalg.norm(given["normal"])
+        if upward > LOOKING_UP and rectangle(given).points[:, 2].max() < min(lows):
+            normal = ", ".join(f"{each:g}" for each in given["normal"])
+            raise ConfigError(
+                f"outlets.{name}.normal is ({normal}), allowed is whither material leaves: below all parts it falls,"
+                " against the normal it would not be counted; turn it round."
+            )
 
 
 def _check_none_lost(run: Mapping[str, Any], parts: Sequence[SurfaceMesh], found: str) -> None:

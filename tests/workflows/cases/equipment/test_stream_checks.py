@@ -114,6 +114,21 @@ def test_feed_does_not_fall_through_a_gap_that_is_narrower_than_a_particle():
                 check_stream(machine, [floor])
 
 
+def test_an_outlet_that_looks_up_from_below_a_machine_that_moves():
+    """Nothing throws material up through it; through one beside a turning part it may; one may look down."""
+    up = {**BELOW, "normal": [0, 0, 2]}
+    assert message_of(outlets=up, motion=TURN) == (
+        "outlets.below.normal is (0, 0, 2), allowed is whither material leaves: below all parts it falls, against the"
+        " normal it would not be counted; turn it round."
+    )
+    filling = {"fraction": 0.2, "axis": "y", "centre_m": [0.1, 0.0, 0.05], "radius_m": 0.05, "length_m": 0.2}
+    assert message_of(outlets=up, motion=TURN, inlet=None, filling=filling).startswith(
+        "outlets.below.normal is (0, 0, 2)"
+    )
+    for given in (BELOW, {**up, "centre_m": [0.0, 0.0, -0.1]}, {**up, "normal": [2, 0, 1]}):
+        assert checked(outlets=given, motion=TURN) is None
+
+
 def test_a_filling_that_falls_past_all_parts():
     """Beside the floor; above it, or within a drum that turns round it, it falls on a part."""
     filling = {"fraction": 0.2, "axis": "y", "centre_m": [0.0, 0.0, 0.5], "radius_m": 0.1, "length_m": 0.2}
