@@ -28,6 +28,7 @@ from scipy import stats
 from scipy.special import logsumexp
 
 from benchmarks.page import markdown
+from benchmarks.runs import at_least_one
 from bulkwear.postproc.flow.bulk_test import RESPONSES as BULK_RESPONSES
 from bulkwear.postproc.inference.loop import Request, calibrate, posterior
 from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, interval
@@ -294,7 +295,7 @@ def whole_table(number: int, pool: ProcessPoolExecutor) -> pd.DataFrame:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--number", type=int, default=NUMBER, help="calibrations per case")
+    parser.add_argument("--number", type=at_least_one, default=NUMBER, help="calibrations per case")
     parser.add_argument("--output", type=Path, default=Path("docs"))
     parser.add_argument("--redraw", action="store_true", help="write the page from the table of an earlier run")
     given = parser.parse_args()

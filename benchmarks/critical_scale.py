@@ -27,7 +27,7 @@ import pandas as pd
 
 from benchmarks.plots.figures import ratio_by_candidate
 from benchmarks.ratios import ASSUMED, ratio_intervals
-from benchmarks.runs import BY, attempted, simulated_by, simulated_run, with_bed, with_earlier
+from benchmarks.runs import BY, at_least_one, attempted, simulated_by, simulated_run, with_bed, with_earlier
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of, particle_steps
 from benchmarks.scale_page import results_page, source_ratio
 from benchmarks.window_case import PARTICLE_STEPS_PER_SECOND
@@ -271,10 +271,10 @@ def main() -> None:
     parser.add_argument("--output", type=Path, default=Path("docs"))
     parser.add_argument("--scales", type=int, nargs="+", default=SCALES, help="particle scales, rows S1 to S8")
     parser.add_argument("--candidates", nargs="+", choices=CANDIDATES, default=list(CANDIDATES), metavar="NAME")
-    parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each candidate, else {PACKINGS}")
-    parser.add_argument("--reference-packings", type=int, default=OF_REFERENCE, help=f"else {OF_REFERENCE}")
+    parser.add_argument("--packings", type=at_least_one, default=PACKINGS, help=f"of each candidate, else {PACKINGS}")
+    parser.add_argument("--reference-packings", type=at_least_one, default=OF_REFERENCE, help=f"else {OF_REFERENCE}")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/critical_scale"))
-    parser.add_argument("--cores", type=int, default=1, help="runs side by side")
+    parser.add_argument("--cores", type=at_least_one, default=1, help="runs side by side")
     parser.add_argument("--finished", action="store_true", help="simulate nothing, take the runs that are finished")
     parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
     given = parser.parse_args()

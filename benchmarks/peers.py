@@ -29,6 +29,7 @@ from benchmarks.peer_codes import OURS, Code, codes, run_code, step_rate
 from benchmarks.peer_decks import FILL, filling_deck
 from benchmarks.peer_page import QUANTITIES, results_page, speeds
 from benchmarks.plots.peers import rates_by_code
+from benchmarks.runs import at_least_one
 from bulkwear.postproc.plots.style import save
 from bulkwear.workflows.engine.solver import DECK, SCREEN, SolverError, run_deck
 from bulkwear.workflows.forecast.rates import machine_facts
@@ -142,7 +143,7 @@ def main() -> None:
     parser.add_argument("--output", type=Path, default=Path("docs"))
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/peers"), help="for simulations")
     parser.add_argument("--peers", type=Path, default=Path("results/peers"), help="of the peers' environment")
-    parser.add_argument("--rounds", type=int, default=ROUNDS)
+    parser.add_argument("--rounds", type=at_least_one, default=ROUNDS)
     parser.add_argument("--quick", action="store_true", help="tiny sizes; nothing is written into docs")
     parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
     given = parser.parse_args()

@@ -26,7 +26,7 @@ import pandas as pd
 
 from benchmarks.plots.rolling_models import against_source
 from benchmarks.rolling_page import MODELS, NO_REST, PLATE, differences, results_page
-from benchmarks.runs import BY, side_by_side, simulated_by, with_earlier
+from benchmarks.runs import BY, at_least_one, side_by_side, simulated_by, with_earlier
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.postproc.inference.loop import packing_seed
 from bulkwear.postproc.plots.style import save, save_small
@@ -187,12 +187,14 @@ def parser_of(published: pd.DataFrame) -> argparse.ArgumentParser:
     """Return the command line, which knows the pairs of the published table by name."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--output", type=Path, default=Path("docs"))
-    parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each pair, model and test, else {PACKINGS}")
+    parser.add_argument(
+        "--packings", type=at_least_one, default=PACKINGS, help=f"of each pair, model and test, else {PACKINGS}"
+    )
     parser.add_argument("--models", nargs="+", choices=MODELS, default=MODELS, help="else all")
     parser.add_argument("--tests", nargs="+", choices=KINDS, default=KINDS, help="else all")
     parser.add_argument("--pairs", nargs="+", choices=list(published["row"]), default=(), help="else all")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/rolling_models"))
-    parser.add_argument("--cores", type=int, default=1, help="simulations side by side")
+    parser.add_argument("--cores", type=at_least_one, default=1, help="simulations side by side")
     parser.add_argument("--finished", action="store_true", help="simulate nothing, take what is finished")
     parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
     return parser

@@ -19,6 +19,7 @@ import numpy as np
 import pandas as pd
 
 from benchmarks.page import markdown
+from benchmarks.runs import at_least_one
 from bulkwear.postproc.statistics.model_terms import Term, candidate_terms, term_columns
 from bulkwear.postproc.statistics.screening_design import coded_design
 from bulkwear.postproc.statistics.selection import Search, best_of_each
@@ -218,7 +219,7 @@ def told_by_design(table: pd.DataFrame) -> list[str]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--output", type=Path, default=Path("docs"))
-    parser.add_argument("--trials", type=int, default=TRIALS)
+    parser.add_argument("--trials", type=at_least_one, default=TRIALS)
     parser.add_argument("--redraw", action="store_true", help="write the page from the table that is there")
     given = parser.parse_args()
     file = given.output / "selection_error_rates.csv"

@@ -28,6 +28,7 @@ from benchmarks.runs import (
     FIRST_SEED,
     PUBLISHED_PAIR,
     SMALL_BUMPS,
+    at_least_one,
     attempted,
     changed,
     failure_file,
@@ -274,7 +275,7 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/stiffness"))
     parser.add_argument("--output", type=Path, default=Path("docs"))
     parser.add_argument("--minutes", type=float, default=MINUTES, help="processor time of the solver at most")
-    parser.add_argument("--packings", type=int, default=MOST_PACKINGS, help="at most")
+    parser.add_argument("--packings", type=at_least_one, default=MOST_PACKINGS, help="at most")
     parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
     given = parser.parse_args()
     file = given.output / "stiffness.csv"

@@ -28,6 +28,7 @@ from benchmarks.plots.time_step_limits import changes_by_model
 from benchmarks.rolling_page import MODELS
 from benchmarks.runs import (
     FIRST_SEED,
+    at_least_one,
     attempted,
     changed,
     failure_file,
@@ -206,7 +207,7 @@ def main() -> None:
     parser.add_argument("--models", nargs="+", choices=MODELS, default=list(MODELS), metavar="NAME")
     parser.add_argument("--surfaces", nargs="+", choices=SURFACES, default=list(SURFACES), metavar="NAME")
     parser.add_argument("--fractions", nargs="+", type=float, choices=FRACTIONS, default=list(FRACTIONS), metavar="F")
-    parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each model, else {PACKINGS}")
+    parser.add_argument("--packings", type=at_least_one, default=PACKINGS, help=f"of each model, else {PACKINGS}")
     parser.add_argument("--minutes", type=float, default=MINUTES, help="processor time of the solver at most")
     parser.add_argument("--forecast", action="store_true", help="say what is missing, simulate nothing")
     parser.add_argument("--finished", action="store_true", help="simulate nothing, take the runs that are done")

@@ -27,6 +27,7 @@ import pandas as pd
 
 from benchmarks.plots.figures import wear_side_by_side
 from benchmarks.ratios import ratio_intervals
+from benchmarks.runs import at_least_one
 from benchmarks.window_case import (
     BEDS,
     BUMPS,
@@ -324,9 +325,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--output", type=Path, default=Path("docs"))
     parser.add_argument("--surface", choices=SURFACES, help="only this one; else both")
-    parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each bed, {PACKINGS} if it is not given")
+    parser.add_argument(
+        "--packings", type=at_least_one, default=PACKINGS, help=f"of each bed, {PACKINGS} if it is not given"
+    )
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full") / PLACE)
-    parser.add_argument("--cores", type=int, default=1, help="runs side by side")
+    parser.add_argument("--cores", type=at_least_one, default=1, help="runs side by side")
     parser.add_argument("--finished", action="store_true", help="simulate nothing, take the runs that are finished")
     parser.add_argument("--redraw", action="store_true", help="from the tables of an earlier run")
     given = parser.parse_args()
