@@ -386,19 +386,19 @@ def test_killed_and_started_again_is_the_undisturbed_run(finished, tmp_path, mom
 
 
 def test_particle_that_gets_lost_stops_the_run_with_its_place(tmp_path):
-    """The outlet leaves a gap under half of the feed: what falls through it is named with where it was and went."""
-    inlet = {"centre_mm": [250, 0, 40], "size_mm": [200, 60]}  # its other end is above the plate
-    outlets = {"below": {"centre_mm": [-100, 0, -250], "size_mm": [700, 500]}}
+    """The outlet ends at the plate, on whose top all falls: what goes off it beyond is named with where it was."""
+    inlet = {"centre_mm": [155, 0, 40], "size_mm": [44, 60]}
+    outlets = {"below": {"centre_mm": [-200, 0, -250], "size_mm": [680, 500]}}
     domain = {"low_mm": [-500, -300, -350], "high_mm": [500, 300, 300]}
     with machine_study(tmp_path, inlet=inlet, outlets=outlets, domain=domain) as study:
         chain = machine_chain(study, tmp_path / "results/machine")
         with pytest.raises(CycleError) as fault:
             run_chain(chain)
     found = re.fullmatch(
-        r"A, cycle 1: (\d+) particles are missing in the balance .*: last seen at \(([\d.]+), .*, (-[\d.]+)\) mm, "
-        r"going -z; .*close the gap there, or put an outlet there\.",
+        r"A, cycle (\d+): (\d+) particles? (?:is|are) missing in the balance .*: "
+        r"last seen at \(([\d.]+), .*, (-[\d.]+)\) mm, going -z; .*close the gap there, or put an outlet there\.",
         str(fault.value),
     )
-    assert found and int(found[1]) > 0
-    assert float(found[2]) == pytest.approx(300.0, abs=60.0) and -400.0 < float(found[3]) < -100.0
-    assert state.finished_cycles(chain.folder, inputs_digest(chain)) == 1
+    assert found and int(found[2]) > 0, str(fault.value)
+    assert float(found[3]) > 140.0 and -400.0 < float(found[4]) < -100.0
+    assert state.finished_cycles(chain.folder, inputs_digest(chain)) == int(found[1])
