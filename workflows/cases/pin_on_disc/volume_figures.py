@@ -53,14 +53,14 @@ def pin_comparison(job: Job) -> Any:
     inputs={"published": PUBLISHED, "factors": "results/{study}/figures/force_rise.csv"},
     told={"update_remark": update_remark},
     caption="""
-    The published volumes are 2 to 6 times alpha F L, by the load and the track that they are of. One candidate at a
-    time, as factors that multiply exactly to the volume that the thesis' own rules would sum up: the summed normal
-    force over the load, the path of the contact point over the length of the track, the share of the wear that is taken
-    up and not carried over to later updates, the displacement rule (volume that the surface loses over the wear taken
-    up; 1 if volume is conserved) and the rule by which volume is summed. Eq 5.9 sums area times path of the centroid
-    over "the elements"; if those are all triangles it finds what the surface has lost, if they are the triangles in
-    contact at the time it leaves out their neighbours, which move as well. The bars take the second reading (a
-    conserving patch moves triangles that nothing touches, its sum is over all), the table holds both.
+    The published volumes are several times alpha F L of their own load and track. One candidate at a time, as factors
+    that multiply exactly to the volume that the thesis' own rules would sum up: the summed normal force over the load,
+    the path of the contact point over the length of the track, the share of the wear that is taken up and not carried
+    over to later updates, the displacement rule (volume that the surface loses over the wear taken up; 1 if volume is
+    conserved) and the rule by which volume is summed. Eq 5.9 sums area times path of the centroid over "the elements";
+    if those are all triangles it finds what the surface has lost, if they are the triangles in contact at the time it
+    leaves out their neighbours, which move as well. The bars take the second reading (a conserving patch moves
+    triangles that nothing touches, its sum is over all), the table holds both.
 
     The second reading depends on the length of a wear update. On a flat disc it gives 1 times alpha times the sliding
     work with one triangle per update, about 3 times with an arc of many triangles, where all triangles give about 6
