@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import time
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,6 +21,8 @@ from bulkwear.workflows.engine.state import LOCK, STATE
 DONE, RUNNING, WAITING, STOPPED, FAILED = "done", "running", "waiting", "stopped", "failed"
 RUN, BED = "worn_run_", "settled_bed_"  # begin the names of jobs that have a folder of their own
 PRODUCTS = {RUN: ("wear.csv", "cost.csv"), BED: ("bed.restart", "cost.csv")}  # Snakemake removes them before a job
+# Jobs whose simulations have folders within one of the study's: folder by job. Its lock does not tell which job has it.
+BULK_TESTS = {"calibrated_parameters": "simulations", "box_sizes": "simulations", "packing_profiles": "packings"}
 RECENT = 60.0  # s, in which the log of a job on another machine changes; solvers write a line every few seconds
 LOCKS = Path("/proc/locks")
 LEFT = re.compile(r", (\d+) % of the run, about (.+) left$", re.MULTILINE)
@@ -65,7 +67,7 @@ def job_state(study: Path, job: str, locked: Collection[tuple[int, int]], now: f
     name = job.removeprefix(kind)
     folder = {RUN: study / name, BED: study / "beds" / name}.get(kind)
     log, now = study / "logs" / f"{job}.log", time.time() if now is None else now
-    said, changed = _last_start(log), _changed(log, folder)
+    said, changed = _last_start(log), _changed(log, [folder] if folder else _bulk_tests(study, job))
     cycles, worn = _worn(folder) if kind == RUN else (None, None)
     told = JobState(job, name, WAITING, cycles, worn)
     if folder and _is_locked(folder / LOCK, locked):
@@ -106,9 +108,14 @@ def _last_start(log: Path) -> str:
     return begin + text.rpartition(begin)[2] if begin in text else ""
 
 
-def _changed(log: Path, folder: Path | None) -> float:
+def _bulk_tests(study: Path, job: str) -> list[Path]:
+    """Return the folders of a job's bulk tests, none of a job without."""
+    return list((study / BULK_TESTS[job]).glob("*/")) if job in BULK_TESTS else []
+
+
+def _changed(log: Path, folders: Iterable[Path]) -> float:
     """Return when a job last wrote into its log, or its solver into its own; 0 where neither is there."""
-    solver = [*folder.glob(f"cycle_*.part/{LOG}"), folder / LOG] if folder else []
+    solver = [path for folder in folders for path in (*folder.glob(f"cycle_*.part/{LOG}"), folder / LOG)]
     return max((path.stat().st_mtime for path in (log, *solver) if path.is_file()), default=0.0)
 
 

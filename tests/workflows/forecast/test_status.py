@@ -7,6 +7,9 @@ import pandas as pd
 import pytest
 
 from bulkwear.__main__ import main
+from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
+from bulkwear.workflows.cases.calibration.case import Calibration
+from bulkwear.workflows.cases.sliding_sample.particle_size.packings import JOB as PACKING_PROFILES
 from bulkwear.workflows.engine.job import Progress, duration_text, project_job, seconds_of
 from bulkwear.workflows.engine.records import write_record
 from bulkwear.workflows.engine.solver import SolverError
@@ -85,6 +88,24 @@ def test_a_job_without_its_process_is_stopped(results):
     folder = results / "demo"
     assert job_state(folder, "worn_run_a", locked_files()).state == RUNNING
     assert job_state(folder, "worn_run_a", locked_files(), time.time() + LATER).state == STOPPED
+
+
+@pytest.mark.parametrize(
+    ("job", "within"),
+    [*((rule, SIMULATIONS) for rule in Calibration.solver_rules), (PACKING_PROFILES, "packings")],
+)
+def test_a_job_of_bulk_tests_runs_as_long_as_one_of_them_does(results, job, within):
+    """Its own log says nothing until a test ends, a quarter of an hour later; their solvers' logs do."""
+    folder, later = results / "demo", time.time() + LATER
+    with project_job(folder / "logs" / f"{job}.log"):
+        pass
+    assert job_state(folder, job, set(), later).state == STOPPED
+    log = folder / within / "draw_down_0" / "cycle_000.part" / "log.liggghts"
+    log.parent.mkdir(parents=True)
+    log.touch()
+    os.utime(log, (later, later))
+    assert job_state(folder, job, set(), later).state == RUNNING
+    assert job_state(folder, job, set(), later + LATER).state == STOPPED
 
 
 def test_the_last_start_counts(results):
