@@ -1,6 +1,8 @@
 """A calibration study: what it asks for, and what is refused."""
 
 import io
+import re
+from functools import cache
 
 import pandas as pd
 import pytest
@@ -11,6 +13,7 @@ from bulkwear.workflows.cases.calibration.driver import pair_of, repeat_seeds
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.layers import Layer
 from bulkwear.workflows.config.run_checks import CheckedRun
+from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.project import Project
 from tests.support.calibration_study import MEASURED, PAIRS, ROLLING, SLIDING, study
 
@@ -72,7 +75,7 @@ def test_every_fidelity_loads(fidelity):
         ),
         (
             {"draw_down": {"length_mm": 160}},
-            r"draw_down\.length_mm is 160.*allowed is at least 183\.3, the opening as simulated, 56\.13, and six",
+            r"draw_down\.length_mm is 160.*allowed is at least 183\.4, the opening as simulated, 56\.13, and six",
         ),
         (
             {"draw_down": {"lower_height_mm": 60}},
@@ -80,7 +83,7 @@ def test_every_fidelity_loads(fidelity):
         ),
         (
             {"draw_down": {"fill_mass_kg_per_m": 1968}},
-            r"draw_down\.fill_mass_kg_per_m is 1968.*allowed is from 101\.6 to 304\.8",
+            r"draw_down\.fill_mass_kg_per_m is 1968.*allowed is from 101\.6 to 304\.7",
         ),
         (
             {"particle_scale": 1, "shear_box": {"width_mm": 5000}},
@@ -92,7 +95,7 @@ def test_every_fidelity_loads(fidelity):
         ),
         (
             {"rest": {"longest_s": 0.35}, "calibration": {"tests": ["shear_box"]}},
-            r"rest\.longest_s is 0\.35.*allowed is at least 0\.4027: a fall through the filling of shear_box",
+            r"rest\.longest_s is 0\.35.*allowed is at least 0\.4028: a fall through the filling of shear_box",
         ),
         ({"rest": {"longest_s": 4}}, r"rest\.longest_s is 4.*allowed is at least 4\..*: the outflow of draw_down"),
         ({"bulk": {"shape": "cube"}}, r"bulk\.shape is 'cube'.*allowed is one of sphere, pair, tetrahedron"),
@@ -103,6 +106,47 @@ def test_what_cannot_be_calibrated_is_refused(overrides, words):
     """A fault is one sentence that names the key, the value and what is allowed, before anything is simulated."""
     with pytest.raises(ConfigError, match=words):
         load_study("calibration", overrides={"fidelity": "standard", **overrides})
+
+
+@cache
+def scaled(scale):
+    """Parameters of the study at standard with another particle scale."""
+    return load_study("calibration", overrides={"fidelity": "standard", "particle_scale": scale}).runs[0].parameters
+
+
+@pytest.mark.parametrize("scale", [3.7, 3.9013, 4.111])
+@pytest.mark.parametrize(
+    ("section", "key", "value"),
+    [
+        ("shear_box", "length_mm", 20),
+        ("draw_down", "length_mm", 150),
+        ("draw_down", "opening_mm", 5),
+        ("draw_down", "lower_height_mm", 60),
+        ("draw_down", "fill_mass_kg_per_m", 1),
+        ("wall_shear", "drag_mm", 1),
+        ("rest", "longest_s", 1),
+    ],
+)
+def test_the_limit_that_a_refusal_names_is_allowed(scale, section, key, value):
+    """Limits are shown in four digits: rounded down, the value that a sentence asks for was refused again."""
+    tests = ["shear_box", "wall_shear" if section == "wall_shear" else "draw_down"]
+    parameters = {**scaled(scale), "calibration": {**scaled(scale)["calibration"], "tests": tests}}
+
+    def fault(number):
+        changed = {**parameters, section: {**parameters[section], **to_si({key: float(number)})}}
+        checked = CheckedRun((), {}, Layer("", {}, {}), changed)
+        return next(filter(None, (check(checked) for check in box_checks.BOX_CHECKS)), None)
+
+    found = fault(value)
+    assert found is not None and found[0] == f"{section}.{key}"
+    after = fault(re.search(r"(?:at least|from) ([\d.]+)", found[1])[1])
+    assert after is None or after[0] != found[0]  # another setting may be at fault then
+
+
+def test_an_opening_of_half_the_box_is_allowed():
+    """The refusal of a longer one says: to half the box's length."""
+    box = {"length_mm": 500, "opening_mm": 250}
+    assert load_study("calibration", overrides={"fidelity": "standard", "draw_down": box}).runs
 
 
 @pytest.mark.parametrize(
