@@ -28,11 +28,15 @@ def allowed_value(parameter: str) -> str:
 
 def ranges_in_order(run: CheckedRun) -> Fault | None:
     """A parameter's low is below its high, and each parameter stands once."""
-    parameters = run.settings["calibration"]["parameters"]
-    if any(each["low"] >= each["high"] for each in parameters):
-        return "calibration.parameters", "a low below the high of every parameter"
-    if len({each["name"] for each in parameters}) < len(parameters):
-        return "calibration.parameters", "each parameter once"
+    seen: set[str] = set()
+    for each in run.settings["calibration"]["parameters"]:
+        name, low, high = each["name"], each["low"], each["high"]
+        if low >= high:
+            allowed = f"a low below the high of every parameter; {name} has low {low:g} and high {high:g}"
+            return "calibration.parameters", allowed
+        if name in seen:
+            return "calibration.parameters", f"each parameter once; {name} stands there twice"
+        seen.add(name)
     return None
 
 

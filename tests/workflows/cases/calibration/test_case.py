@@ -178,12 +178,20 @@ def test_a_test_of_which_nothing_was_measured_is_refused():
         study(calibration={"tests": ["shear_box", "wall_shear"]})
 
 
-def test_ranges_must_be_ranges():
-    """A low above its high, or a parameter named twice, is refused."""
-    for second in ({"name": ROLLING, "low": 0.7, "high": 0.1}, {"name": SLIDING, "low": 0.1, "high": 0.7}):
-        parameters = [{"name": SLIDING, "low": 0.1, "high": 0.7}, second]
-        with pytest.raises(ConfigError, match=r"calibration\.parameters"):
-            study(calibration={"parameters": parameters})
+@pytest.mark.parametrize(
+    ("others", "words"),
+    [
+        ([{"name": ROLLING, "low": 0.7, "high": 0.1}], f"every parameter; {ROLLING} has low 0.7 and high 0.1"),
+        ([{"name": ROLLING, "low": 0.3, "high": 0.3}], f"every parameter; {ROLLING} has low 0.3 and high 0.3"),
+        ([{"name": SLIDING, "low": 0.1, "high": 0.7}], f"each parameter once; {SLIDING} stands there twice"),
+        ([{"name": ROLLING, "low": 0.1, "high": 0.7}] * 5, "a list of two to five blocks with name, low and high"),
+    ],
+)
+def test_ranges_must_be_ranges(others, words):
+    """A low that is not below its high and a parameter named twice are told by name; there are five that may be."""
+    parameters = [{"name": SLIDING, "low": 0.1, "high": 0.7}, *others]
+    with pytest.raises(ConfigError, match=rf"calibration\.parameters .*{words}"):
+        study(calibration={"parameters": parameters})
 
 
 @pytest.mark.parametrize(
