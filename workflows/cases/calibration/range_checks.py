@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from bulkwear.workflows.cases.calibration.checks import TABLE_CHECKS
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault
 from bulkwear.workflows.config.schema import load_schema, validator
 from bulkwear.workflows.config.validation import allowed_text
@@ -59,4 +60,4 @@ def rolling_has_a_model(run: CheckedRun) -> Fault | None:
     return "solver.rolling_friction", f"a model, where calibration.parameters has {rolling}"
 
 
-RANGE_CHECKS: tuple[Check, ...] = (ranges_in_order, ranges_are_of_contacts, rolling_has_a_model)
+RANGE_CHECKS: tuple[Check, ...] = (ranges_in_order, ranges_are_of_contacts, rolling_has_a_model, *TABLE_CHECKS)
