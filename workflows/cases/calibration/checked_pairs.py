@@ -10,6 +10,7 @@ there already is not simulated again. The simulations lie beside those of the ca
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -22,17 +23,24 @@ from bulkwear.workflows.cases.calibration.case import published
 from bulkwear.workflows.cases.calibration.driver import repeated
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, repeat_table, with_bands
 from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Parameters
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.project import work_here
+from bulkwear.workflows.engine.solver import SolverError
 
+CASE = "calibration"
 CHECKED = "checked_pairs.csv"
 MARKS = ["pair", "test", "seed", "particle_scale", "width_mm"]  # tell one row from another, with the parameters
 
 
 def pair_found(repeats: pd.DataFrame, pair: str, names: list[str]) -> dict[str, float]:
-    """Return {parameter: value} of a pair in a calibration's table of repeats. Raises ValueError when it has none."""
+    """Return {parameter: value} of a pair in a calibration's table of repeats. Raises ValueError when it has none, or
+    not all parameters.
+    """
+    if other := [name for name in names if name not in repeats]:
+        raise ValueError(f"repeats.csv has no column {other[0]}, which calibration.parameters has: calibrate again.")
     rows = repeats[repeats["pair"] == pair]
     if rows.empty:
         there = ", ".join(dict.fromkeys(repeats["pair"]))
@@ -51,6 +59,9 @@ def asked_run(study: str, fidelity: str, test: str, seeds: int) -> Parameters:
         overrides = {"fidelity": fidelity, "calibration": {"repeats": seeds, **asked}}
         return load_study(study, overrides=overrides).all_runs[0].parameters
 
+    if (case := load_study(study, overrides={"fidelity": fidelity}).case.name) != CASE:
+        raise ConfigError(f"study {study}: its case is {case}, allowed is one of case {CASE}.")
+
     run = run_of()
     if set(published(run["calibration"]["measured"])["response"]) & set(RESPONSES[test]):
         return run_of(tests=[test])
@@ -61,7 +72,11 @@ def check_pair(parameters: Parameters, pair: str, folder: Path, workers: int) ->
     """Simulate a pair in the tests of `parameters`, add its rows to the table in the folder, and return the table."""
     say = Progress("checked pairs", 1).say
     names = [each["name"] for each in parameters["calibration"]["parameters"]]
-    values = pair_found(pd.read_csv(folder / "repeats.csv"), pair, names)
+    if not (repeats := folder / "repeats.csv").is_file():
+        raise ValueError(
+            f"{repeats} is missing, allowed is a study whose calibration is finished: snakemake {folder.name}"
+        )
+    values = pair_found(pd.read_csv(repeats), pair, names)
     with state.only_driver(folder / SIMULATIONS, say):
         rows = repeated(parameters, {pair: values}, folder, workers, say)
     rows.insert(3, "particle_scale", parameters["particle"]["scale"])
@@ -94,9 +109,15 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--workers", type=int, default=1, help="simulations at the same time")
     given = parser.parse_args()
-    work_here()
-    run = asked_run(given.study, given.fidelity, given.test, given.seeds)
-    print(check_pair(run, given.pair, Path("results") / given.study, given.workers).to_string(index=False))
+    if given.workers < 1:
+        parser.error(f"argument --workers: {given.workers}, allowed is a whole number from 1")
+    try:
+        work_here()
+        run = asked_run(given.study, given.fidelity, given.test, given.seeds)
+        table = check_pair(run, given.pair, Path("results") / given.study, given.workers)
+    except (ValueError, SolverError) as fault:  # of settings, the project and tables, and of a simulation
+        sys.exit(str(fault))
+    print(table.to_string(index=False))
 
 
 if __name__ == "__main__":

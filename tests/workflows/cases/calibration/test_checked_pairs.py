@@ -5,6 +5,7 @@ import shutil
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.calibration import checked_pairs
 from bulkwear.workflows.cases.calibration.checked_pairs import asked_run, check_pair, checked_means
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
 from bulkwear.workflows.config.layers import ConfigError
@@ -41,6 +42,44 @@ def test_a_test_that_the_study_does_not_have_is_checked_too():
     for test in ("draw_down", "wall_shear"):  # nothing was measured in the second one
         found = asked_run("calibration", "standard", test, 3)["calibration"]
         assert (found["tests"], found["repeats"]) == ([test], 3)
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        (["--study", "nobody"], "study is 'nobody', allowed is one of"),
+        (["--study", "demo"], "study demo: its case is sliding_sample, allowed is one of case calibration."),
+        (["--seeds", "0"], "calibration.repeats is 0, allowed is a whole number from 1 to 100"),
+        ([], "results/calibration/repeats.csv is missing, allowed is a study whose calibration is finished"),
+    ],
+)
+def test_a_fault_ends_in_one_sentence(asked, words, tmp_path, monkeypatch):
+    """Of the command line, the study, or a calibration that is not there: before, a traceback."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(checked_pairs, "work_here", lambda: None)
+    monkeypatch.setattr("sys.argv", ["checked_pairs", *asked])
+    with pytest.raises(SystemExit) as ended:
+        checked_pairs.main()
+    assert words in ended.value.code
+
+
+def test_no_workers_are_refused(monkeypatch, capsys):
+    """As an argument that is no number is."""
+    monkeypatch.setattr("sys.argv", ["checked_pairs", "--workers", "0"])
+    with pytest.raises(SystemExit):
+        checked_pairs.main()
+    assert "argument --workers: 0, allowed is a whole number from 1" in capsys.readouterr().err
+
+
+def test_a_calibration_of_other_parameters_is_told(done, tmp_path):
+    """Parameters that were added after the calibration stand in no column of its repeats."""
+    run = study().runs[0].parameters
+    asked = [*run["calibration"]["parameters"], {"name": "particle.contact.restitution", "low": 0.1, "high": 0.9}]
+    shutil.copy(done.folder / "repeats.csv", tmp_path)
+    with pytest.raises(
+        ValueError, match=r"no column particle\.contact\.restitution, which calibration\.parameters has"
+    ):
+        check_pair({**run, "calibration": {**run["calibration"], "parameters": asked}}, RECOMMENDED, tmp_path, 1)
 
 
 def test_only_packings_of_one_pair_and_test_are_averaged(done):
