@@ -15,8 +15,13 @@ from bulkwear.workflows.cases.calibration.boxes import (
     wall_shear_surfaces,
     with_values,
 )
+from bulkwear.workflows.cases.calibration.boxes import (
+    test_of as made_test,
+)
+from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.bulk_tests import deck_text, time_step
 from bulkwear.workflows.engine.grains import smallest_radius
+from bulkwear.workflows.engine.project import enter_project, leave_project
 from tests.support.bulk_boxes import NOT_ROLLING, PAIR, ROLLING, SLIDING, asked
 
 EXACT = 1e-12  # relative: the same formula
@@ -129,6 +134,21 @@ def test_the_mass_told_is_poured():
     del left_out["box"]["fill_mass_kg_per_m"]
     expected = 0.59 * 2460.0 * 0.5 * 0.28 * told["box"]["width_m"]
     assert draw_down(left_out)["poured_mass_kg"] == pytest.approx(expected, rel=EXACT)
+
+
+def test_a_box_of_ones_own_is_filled_to_its_height(tmp_path):
+    """A study of one's own that tells no mass: the source's, 197 kg/m, would fill this box to 0.62 of its height."""
+    (tmp_path / "config/studies").mkdir(parents=True)
+    text = "title: own\nquestion: Which?\ncase: calibration\ndesign: shear_box_sizes.csv\nparticle_scale: 3\n"
+    box = "draw_down: {length_mm: 400, fill_height_mm: 546, lower_height_mm: 700}\nshear_box: {width_mm: 43}\n"
+    (tmp_path / "config/studies/own.yaml").write_text(text + box)
+    enter_project(tmp_path)
+    try:
+        test = made_test(load_study("own").runs[0].parameters, "draw_down", {}, 20011)
+    finally:
+        leave_project()
+    expected = 0.59 * 2460.0 * 0.4 * 0.546 * test["box"]["width_m"]
+    assert draw_down(test)["poured_mass_kg"] == pytest.approx(expected, rel=EXACT)
 
 
 def test_slot_keeps_what_particles_see_of_it():
