@@ -143,6 +143,15 @@ def test_the_limit_that_a_refusal_names_is_allowed(scale, section, key, value):
     assert after is None or after[0] != found[0]  # another setting may be at fault then
 
 
+def test_the_particle_scale_that_is_named_is_enough_for_all_boxes():
+    """Of two boxes that hold too many particles the fuller one decides: here the draw-down test."""
+    overrides = {"fidelity": "paper", "particle_scale": 1, "draw_down": {"width_mm": 3000}}
+    with pytest.raises(ConfigError, match=r"particle_scale is 1 .*a smaller box: draw_down holds about") as refused:
+        study(shear_box={"width_mm": 5000}, **overrides)
+    named = float(re.search(r"at least ([\d.]+)", str(refused.value))[1])
+    assert study(shear_box={"width_mm": 5000}, **{**overrides, "particle_scale": named}).runs
+
+
 def test_an_opening_of_half_the_box_is_allowed():
     """The refusal of a longer one says: to half the box's length."""
     run = study(fidelity="standard").runs[0].parameters
