@@ -12,6 +12,7 @@ from snakemake.io import IOFile
 from snakemake.settings.types import RerunTrigger
 from snakemake.utils import min_version
 
+from bulkwear.workflows.config.deck_checks import template_faults_told
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
 from bulkwear.workflows.config.packings import possible_packings
 from bulkwear.workflows.config.published_tables import check_published
@@ -25,6 +26,7 @@ from bulkwear.workflows.config.targets import (
     triggers_sentence,
 )
 from bulkwear.workflows.engine.cases import case_folders
+from bulkwear.workflows.engine.chain import sample_decks
 from bulkwear.workflows.engine.inputs import (
     SimulatedFrom,
     bed_digest,
@@ -94,9 +96,17 @@ def checked_studies(settings, named):
                 if len(study.runs) > MANY_RUNS:
                     logger.info(f"Study {study.name} has {len(study.runs):,} runs: to plan them takes minutes.")
                 check_files(study.name, study.case, study.runs)
+                check_decks(study)
         return studies
     except (ConfigError, DeckError, ProjectError) as fault:
         raise WorkflowError(str(fault)) from None
+
+
+def check_decks(study):
+    """Render a deck of each kind of a study's first run, as its jobs will: a template may have been edited."""
+    first = study.runs[0]
+    with template_faults_told():
+        sample_decks(study.case, first.parameters, study.beds.get(study.bed_of(first.name)))
 
 
 def sound_study(name, settings):

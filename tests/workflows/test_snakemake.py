@@ -172,6 +172,20 @@ def test_an_edited_template_renders_again(tmp_path):
     assert deck.read_text().endswith("# the end\n")
 
 
+def test_a_fault_of_an_edited_template_is_one_sentence(tmp_path):
+    """It names the file; no rule of Snakemake and no line of our code."""
+    folder = workspace(tmp_path)
+    template = folder / "templates/sliding_sample/sliding_sample.in.j2"
+    whole = template.read_text()
+    for filtered, sentence in (("skinm", ": parameter skinm is not given"), ("skin_m | tabel", ", line 29: No filter")):
+        template.write_text(whole.replace("{{ skin_m }}", f"{{{{ {filtered} }}}}"))
+        process = snakemake(folder, "tiny_decks", "--dry-run")
+        output, _ = process.communicate(timeout=TIMEOUT)
+        assert process.returncode != 0
+        assert f"templates/sliding_sample/sliding_sample.in.j2{sentence}" in output
+        assert "Traceback" not in output and "InputFunctionException" not in output
+
+
 @pytest.mark.verify
 def test_a_study_is_planned_without_a_solver(tmp_path):
     """Without the program that its wear cycles need a study is planned all the same."""

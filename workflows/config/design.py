@@ -24,6 +24,7 @@ from bulkwear.workflows.config.coefficients import (
     with_coefficients,
 )
 from bulkwear.workflows.config.columns import as_settings, opened, row_overrides, setting_columns, with_row
+from bulkwear.workflows.config.deck_checks import check_own_words, template_faults_told
 from bulkwear.workflows.config.factors import FACTORS, can_tell, factors_of
 from bulkwear.workflows.config.law_settings import check_law, check_volume
 from bulkwear.workflows.config.laws_beside import check_beside
@@ -40,7 +41,6 @@ from bulkwear.workflows.config.run_checks import (
     LAST_CHECKS,
     CheckedRun,
     check_needed,
-    check_own_words,
     check_run,
 )
 from bulkwear.workflows.config.schema import case_schema, load_schema
@@ -212,6 +212,7 @@ class Study:
 
 
 @templates_read_once()
+@template_faults_told()
 def load_study(name: str, project: Project | None = None, overrides: dict[str, Any] | None = None) -> Study:
     """Return a checked study of a project, by default the current one, or of the package, with all its runs.
 

@@ -6,12 +6,10 @@ those of every case and those of a sliding sample are here.
 
 from __future__ import annotations
 
-import codecs
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.meshes.lattice import narrowest_gap, pattern_faults
@@ -20,9 +18,7 @@ from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.config.schema import load_schema
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.validation import allowed_text, files_of, locate, show
-from bulkwear.workflows.engine.project import current_project
-from bulkwear.workflows.engine.template_files import DeckError, own_templates
-from bulkwear.workflows.engine.templates import solver_settings, template_variables
+from bulkwear.workflows.engine.templates import solver_settings
 
 if TYPE_CHECKING:
     from bulkwear.workflows.engine.case import Case, Run
@@ -137,43 +133,6 @@ def model_properties_given(run: CheckedRun) -> Fault | None:
             missing = f"solver.{key} ({allowed_text(known[key])}) is missing"
             return f"solver.{chosen_by}", f"one whose properties stand beside it: {missing}"
     return None
-
-
-def check_own_words(layers: tuple[Layer, ...], case: Case, words: Mapping[str, Any], decks: Callable[[], Any]) -> None:
-    """Raise ConfigError for a word of the user's own that no template of a case uses, or that is one of ours, and for a
-    template of the project's own that uses a word which nobody gives.
-
-    decks: renders a deck of each kind
-    """
-    bed = (case.bed_template,) if case.bed_template else ()
-    templates = (*case.run_templates, *bed, *case.more_templates)
-    if not words and not own_templates():
-        return
-    for file in own_templates():
-        _check_own_template(file)
-    where = f"{locate(layers, ('deck',))}: " if words else ""
-    try:
-        unused = sorted(set(words).difference(*map(template_variables, templates)))
-        if not unused:
-            decks()
-    except DeckError as fault:
-        raise ConfigError(f"{where}{fault}") from None
-    for word in unused:
-        raise ConfigError(
-            f"{locate(layers, ('deck', word))}: deck.{word} stands in no template, allowed is a word that one of"
-            f" {', '.join(templates)} uses."
-        )
-
-
-def _check_own_template(file: Path) -> None:
-    """Raise ConfigError for a template of the project's own that is empty or begins with a byte order mark."""
-    text, shown = file.read_bytes(), file.relative_to(current_project().folder)
-    if text.startswith(codecs.BOM_UTF8):
-        raise ConfigError(
-            f"{shown}: found a byte order mark, which the solver takes for a word, allowed is UTF-8 without one."
-        )
-    if not text.strip():
-        raise ConfigError(f"{shown}: the file is empty, allowed is a template, or no such file.")
 
 
 def element_resolves_pattern(run: CheckedRun) -> Fault | None:
