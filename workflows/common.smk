@@ -18,12 +18,15 @@ from bulkwear.workflows.config.packings import possible_packings
 from bulkwear.workflows.config.published_tables import check_published
 from bulkwear.workflows.config.rounds import read_round
 from bulkwear.workflows.config.run_checks import check_files
+from bulkwear.workflows.config.schema import load_schema
 from bulkwear.workflows.config.targets import (
     default_studies,
     naming,
     nearly_studies,
+    placed,
     requested_studies,
     triggers_sentence,
+    unheard_sentence,
 )
 from bulkwear.workflows.engine.cases import case_folders
 from bulkwear.workflows.engine.chain import sample_decks
@@ -99,7 +102,7 @@ def checked_studies(settings, named):
                 check_decks(study)
         return studies
     except (ConfigError, DeckError, ProjectError) as fault:
-        raise WorkflowError(str(fault)) from None
+        raise WorkflowError(placed(str(fault), NAMING, GIVEN.config or ())) from None
 
 
 def check_decks(study):
@@ -117,11 +120,22 @@ def sound_study(name, settings):
         logger.warning(f"Study {name} is left out: {fault}")
 
 
+if (MOVED := workflow.modifier.path_modifier.replace_prefix("results/first/summary.csv")) != "results/first/summary.csv":
+    raise WorkflowError(f"module: its prefix makes {MOVED} of results/first/summary.csv, allowed is a module without one.")
+def tell_unheard():
+    """Say which settings of the command line do not reach the studies, as they are not in the config of the module."""
+    if NAMING.is_module and not GIVEN.target_jobs:
+        known = {*load_schema("settings")["properties"], *(key for study in STUDIES.values() for key in study.settings)}
+        if said := unheard_sentence(GIVEN.config or (), config, known):
+            logger.warning(said)
+
+
 PROJECT = entered_project()
 if not isinstance(config, dict):
     raise WorkflowError(f"config of the module is {config!r}, allowed is a block of keys to values.")
 SETTINGS = {key: value for key, value in config.items() if key != "studies"}  # of the command line
 STUDIES = checked_studies(SETTINGS, config.get("studies", []))
+tell_unheard()
 
 
 wildcard_constraints:

@@ -441,6 +441,27 @@ def test_a_pipeline_without_our_profile_is_told(tmp_path, triggers, said):
     assert output.count("rerun-triggers of Snakemake") == bool(said) and said in output
 
 
+def test_settings_of_a_pipeline_are_those_of_its_block(tmp_path):
+    """What the command line sets beside the block does not reach the studies, which is said; a fault within the block
+    names the module. What moves the results is refused.
+    """
+    folder = own_project(tmp_path / "my project")
+    snakefile = folder / "Snakefile"
+    own = snakefile.read_text()
+    snakefile.write_text(own.replace("        config\n", '        config.get("bulkwear", {})\n'))
+    lost = ("--config", "fidelity=paper", "sample={width_mm: 50}", "colour=red")
+    output = said_of(folder, *PROFILE, "bw_mine", "--dry-run", *lost)
+    assert "command line: fidelity, sample of --config does not reach the studies" in output
+    given = said_of(folder, *PROFILE, "bw_mine", "--dry-run", "--config", "bulkwear={particle_scale: 5}")
+    assert "does not reach" not in given
+    snakefile.write_text('config["bulkwear"] = {"fidelity": "paper"}\n' + snakefile.read_text())
+    output = said_of(folder, *PROFILE, "bw_mine", "--dry-run", code=1)
+    assert "config of the module: fidelity is 'paper', allowed is one of quick" in output
+    snakefile.write_text(own.replace("    config:\n", '    prefix:\n        "sub"\n    config:\n'))
+    output = said_of(folder, *PROFILE, "bw_mine", "--dry-run", code=1)
+    assert "module: its prefix makes sub/results/first/summary.csv of results/first/summary.csv, allowed is" in output
+
+
 def test_a_study_of_the_package_s_name_is_refused(tmp_path):
     """It would be unclear whose it is."""
     folder = own_project(tmp_path / "my project")

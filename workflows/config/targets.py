@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from bulkwear.workflows.config.design import CONFIRMATION, RULE_NAMES, TARGETS, ConfigError, list_studies
@@ -12,6 +12,7 @@ from bulkwear.workflows.config.sources import own_studies
 from bulkwear.workflows.config.validation import unknown_name
 from bulkwear.workflows.engine.project import Project, current_project
 
+COMMAND_LINE = "command line"  # as faults of what it gives begin
 DEMO = "demo"  # of the package
 RERUN_TRIGGERS = ("mtime", "params", "input")  # as in profiles/default: what Snakemake makes a job again for
 BELOW_RESULTS = re.compile(r"(?:.*/)?results/([^/]+)/")
@@ -53,6 +54,32 @@ def triggers_sentence(found: Iterable[str]) -> str | None:
     return (
         f"rerun-triggers of Snakemake are {', '.join(found)}: {means}; the package's profiles/default has"
         f" {', '.join(RERUN_TRIGGERS)}."
+    )
+
+
+def placed(sentence: str, names: Naming, given: Sequence[str]) -> str:
+    """Return the sentence for a fault of the settings over all studies with the place where they stand: those of a
+    module come from its config, unless the command line has settings.
+
+    given: what the command line has for --config
+    """
+    of_module = names.is_module and not given and sentence.startswith(f"{COMMAND_LINE}: ")
+    return f"config of the module{sentence.removeprefix(COMMAND_LINE)}" if of_module else sentence
+
+
+def unheard_sentence(given: Sequence[str], heard: Collection[str], known: Collection[str]) -> str | None:
+    """Return a sentence for settings of ours on the command line that do not reach the module, which has a config of
+    its own; None where all do.
+
+    given: what the command line has for --config, KEY=VALUE; heard: keys of the module's config; known: of settings
+    """
+    keys = [word.partition("=")[0] for word in given]
+    lost = [key for key in keys if key in known and key not in heard]
+    if not lost:
+        return None
+    return (
+        f"{COMMAND_LINE}: {', '.join(lost)} of --config does not reach the studies: settings are those of the module's"
+        " `config:`, as --config 'bulkwear={KEY: VALUE}' where that takes a block `bulkwear`."
     )
 
 
@@ -126,5 +153,5 @@ def _studies_of(word: str, written: list[str], names: Naming) -> list[str] | Non
     if names.is_module:
         return None
     *first, last = (*TARGETS, CONFIRMATION)
-    sentence = unknown_name("command line", "target", word, written).removesuffix(".")
+    sentence = unknown_name(COMMAND_LINE, "target", word, written).removesuffix(".")
     raise ConfigError(f"{sentence}, alone or with the ending {', '.join(first)} or {last}.")
