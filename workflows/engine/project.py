@@ -94,7 +94,7 @@ class Project:
 
     def astray(self) -> list[str]:
         """Return a sentence for each file of the project that nearly has the name of one of the package, or has it in
-        another folder, and so does not stand before it: templates, and files right in `config/`.
+        another folder, and so does not stand before it: templates, and files right in `config/` and of its cases.
         """
         if self.is_package:
             return []
@@ -102,9 +102,11 @@ class Project:
         before = {path for name, path in own.items() if name in theirs}
         known = {path.name: path for path in theirs.values()}
         settings = {path.name: path.relative_to(self.package) for path in (self.package / CONFIG).glob("*.yaml")}
+        cases = {path.name: path.relative_to(self.package) for path in (self.package / CONFIG / CASES).glob("*.yaml")}
         found = [
-            *((path, known) for path in self._own(TEMPLATES, "**/*.in*") if path not in before),
+            *((path, known) for path in self._own(TEMPLATES, "**/*.*") if path not in before),
             *((path, settings) for path in self._own(CONFIG, "*.y*ml") if path.name not in settings),
+            *((path, cases) for path in self._own(CONFIG, f"{CASES}/*.yml")),  # .yaml of no case is refused
         ]
         near = [(path, difflib.get_close_matches(path.name, names, 1, ALIKE), names) for path, names in found]
         return [

@@ -80,14 +80,15 @@ def test_every_file_that_stands_before_one_of_the_package_is_said(mine):
 def test_a_file_that_nearly_stands_before_one_of_the_package_is_said(mine):
     """Another folder, another ending, a letter too few; templates and settings with names of their own are not."""
     (mine.folder / "templates/equipment").mkdir(parents=True, exist_ok=True)
-    for name in ("equipment/machine_end.in.j2", "equipment/equipement.in.j2", "equipment/equipment.in", "mine.in.j2"):
-        (mine.folder / "templates" / name).touch()
-    for name in ("defaults.yaml", "material.yml", "ore.yaml"):
+    for name in ("machine_end.in.j2", "equipement.in.j2", "equipment.in", "equipment.j2", "mine.in.j2", "notes.md"):
+        (mine.folder / "templates/equipment" / name).touch()
+    for name in ("defaults.yaml", "material.yml", "ore.yaml", "cases/sliding_sample.yml"):
         (mine.folder / "config" / name).touch()
     said = {sentence.partition(":")[0]: sentence for sentence in mine.astray()}
     assert set(said) == {
         *("templates/equipment/machine_end.in.j2", "templates/equipment/equipement.in.j2"),
-        *("templates/equipment/equipment.in", "config/defaults.yaml", "config/material.yml"),
+        *("templates/equipment/equipment.in", "templates/equipment/equipment.j2"),
+        *("config/defaults.yaml", "config/material.yml", "config/cases/sliding_sample.yml"),
     }
     theirs = "not in place of the package's templates/_shared/machine_end.in.j2, whose name it nearly has"
     assert said["templates/equipment/machine_end.in.j2"].endswith(theirs)
