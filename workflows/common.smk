@@ -120,8 +120,6 @@ def sound_study(name, settings):
         logger.warning(f"Study {name} is left out: {fault}")
 
 
-if (MOVED := workflow.modifier.path_modifier.replace_prefix("results/first/summary.csv")) != "results/first/summary.csv":
-    raise WorkflowError(f"module: its prefix makes {MOVED} of results/first/summary.csv, allowed is a module without one.")
 def tell_unheard():
     """Say which settings of the command line do not reach the studies, as they are not in the config of the module."""
     if NAMING.is_module and not GIVEN.target_jobs:
@@ -134,6 +132,9 @@ PROJECT = entered_project()
 if not isinstance(config, dict):
     raise WorkflowError(f"config of the module is {config!r}, allowed is a block of keys to values.")
 SETTINGS = {key: value for key, value in config.items() if key != "studies"}  # of the command line
+PLACE = "results/first/summary.csv"  # any, to see whether a module moves it
+if (MOVED := workflow.modifier.path_modifier.replace_prefix(PLACE)) != PLACE:
+    raise WorkflowError(f"module: its prefix makes {MOVED} of {PLACE}, allowed is a module without one.")
 STUDIES = checked_studies(SETTINGS, config.get("studies", []))
 tell_unheard()
 
