@@ -13,6 +13,7 @@ from snakemake.settings.types import RerunTrigger
 from snakemake.utils import min_version
 
 from bulkwear.workflows.config.deck_checks import template_faults_told
+from bulkwear.workflows.config.deck_commands import left_out
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
 from bulkwear.workflows.config.packings import possible_packings
 from bulkwear.workflows.config.published_tables import check_published
@@ -73,7 +74,7 @@ def entered_project():
     except ProjectError as fault:
         raise WorkflowError(str(fault)) from None
     if not GIVEN.target_jobs:
-        for sentence in (*project.substitutes(), *project.astray()):
+        for sentence in (*project.substitutes(), *project.astray(), *left_out(project)):
             logger.info(sentence)
     return project
 
