@@ -394,6 +394,16 @@ def test_a_bad_file_of_a_project_is_one_sentence(tmp_path, file, text, sentence)
     assert sentence in told_of(folder)
 
 
+def test_what_an_own_template_leaves_out_is_told(tmp_path):
+    """It is no fault: the line stands beside that on which template won."""
+    folder = own_project(tmp_path / "my project")
+    partial = "templates/_shared/integration.in.j2"
+    (folder / partial).parent.mkdir(exist_ok=True)
+    (folder / partial).write_text("fix step_check all check/timestep/gran 1000 0.5 0.5\n")
+    said = said_of(folder, *PROFILE, f"bw_{STUDY}_forecast", "--dry-run")
+    assert said.count(f"{partial}: without fix gravity, fix motion of the package's deck") == 1
+
+
 @pytest.mark.verify
 def test_studies_of_the_package_are_planned_in_a_project(tmp_path):
     """With the published tables that they are compared with, and those of the project where it has some."""

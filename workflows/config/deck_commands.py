@@ -37,7 +37,8 @@ def left_out(project: Project) -> list[str]:
     own = {name: project.folder / path for name, path in template_files(project.folder).items()}
     sentences = []
     for name in sorted(own.keys() & theirs.keys()):
-        there = commands(name, {**theirs, **own})
+        alone = {**own, **theirs, name: own[name]}  # what own partials leave out is told of them
+        there = {*commands(name, {**theirs, **own}), *commands(name, alone)}
         missing = [command for command in commands(name, theirs) if command not in there]
         if missing:
             more = f" and {len(missing) - MOST_NAMED} more" if len(missing) > MOST_NAMED else ""

@@ -47,9 +47,14 @@ def test_a_command_that_is_left_out_is_named(own, removed, missing):
 
 
 def test_a_partial_of_the_project_s_own_is_told_itself(own):
-    """What it lacks is lacking in every deck that includes it; that is said once."""
+    """What it lacks is lacking in every deck that includes it, an own one too; that is said once. What a deck lacks
+    may stand in a partial of the project's.
+    """
+    own(DECK, THEIRS[DECK].read_text())
     said = left_out(own(PARTIAL, "fix gravity all gravity 9.81 vector 0. 0. -1.\n"))
     assert said == [f"templates/{PARTIAL}: without fix motion, fix step_check of the package's deck"]
+    own(DECK, THEIRS[DECK].read_text().replace("write_restart   run.restart", ""))
+    assert left_out(own(PARTIAL, THEIRS[PARTIAL].read_text() + "write_restart run.restart\n")) == []
 
 
 def test_columns_of_progress_count_one_by_one(own):
