@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import isnan
+from functools import reduce
+from math import isnan, nan
+from operator import getitem
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.inference.loop import Posterior
 from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, posterior_weights
 from bulkwear.postproc.inference.problem import Problem
 from bulkwear.postproc.inference.told import LEFT
+from bulkwear.workflows.cases.calibration.boxes import test_of
 from bulkwear.workflows.cases.calibration.figure_findings import MET, parameter_words, reproduced, said_of, values_of
 from bulkwear.workflows.cases.calibration.outcome import Calibrated
 from bulkwear.workflows.cases.calibration.responses import (
@@ -37,23 +41,39 @@ def on_pairs(statements: pd.DataFrame) -> list[str]:
 def in_family(statements: pd.DataFrame, pair: str) -> str:
     """Return whether a pair is kept by what was measured, by the share of the posterior that fits better."""
     rows = statements[statements["pair"] == pair]
-    share = float(rows["denser_share"].iloc[0])
+    return f"The {spoken(pair)} pair ({values_of(rows)}) {kept_words(float(rows['denser_share'].iloc[0]))}."
+
+
+def kept_words(share: float) -> str:
+    """Return whether a pair is kept, by the share of the posterior that fits better; NaN: it was not searched."""
     if isnan(share):
-        return f"The {spoken(pair)} pair ({values_of(rows)}) lies outside of the range that was searched."
+        return "lies outside of the range that was searched"
     verdict = "is rejected" if share > FAMILY_SHARE else "is in the family"
     fits = f"{number(PERCENT * share, 3)} % of the posterior fits better"
-    return f"The {spoken(pair)} pair ({values_of(rows)}) {verdict}: {fits} (allowed: {PERCENT * FAMILY_SHARE:.0f} %)."
+    return f"{verdict}: {fits} (allowed: {PERCENT * FAMILY_SHARE:.0f} %)"
+
+
+def of_material(done: Calibrated) -> str:
+    """Return whether the values that materials have already, with which other studies run, are in the family."""
+    test = test_of(done.parameters, done.parameters["calibration"]["tests"][-1], {}, 0)
+    values = {name: float(reduce(getitem, name.split("."), test)) for name in done.problem.names}
+    point = np.array([list(values.values())])
+    share = float(shares_at(done.problem, done.known, point)[0]) if is_searched(done.problem, point)[0] else nan
+    words = ", ".join(f"{parameter_words(name)} {value:.2f}" for name, value in values.items())
+    return f"The pair of the materials file ({words}) {kept_words(share)}."
 
 
 def on_posterior(done: Calibrated) -> list[str]:
-    """Return the intervals of the parameters, which measurement decides, and which pairs of others are rejected."""
+    """Return the intervals of the parameters, which measurement decides, and which pairs are rejected: of those that
+    others simulated, and the one that the material has.
+    """
     problem, known = done.problem, done.known
     intervals = interval_table(problem, known, done.pairs[done.compared])
     ends = f"{capital('; '.join(interval_words(row) for _, row in intervals.iterrows()))}."
     best = information_table(problem, known).iloc[0]
     bits = measured(best["information_bits"], "bit")
     further = f"Measuring the {said_of(best['response'])[0]} once more is expected to tell most, {bits}."
-    return [ends, *deciding(shares_left(problem, known)), further, *rejected(done)]
+    return [ends, *deciding(shares_left(problem, known)), further, *rejected(done), of_material(done)]
 
 
 def interval_words(row: pd.Series) -> str:

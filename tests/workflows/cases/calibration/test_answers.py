@@ -1,5 +1,6 @@
 """What a calibration answers: what its pair reproduces, which response decides, what is rejected."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +10,8 @@ import pytest
 from bulkwear.postproc.inference.problem import Measured
 from bulkwear.workflows.cases.calibration import answers
 from bulkwear.workflows.cases.calibration import figure_findings as findings
+from bulkwear.workflows.cases.calibration.boxes import with_values
+from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
 from bulkwear.workflows.report.sections import CARE, SOUND, WEAK
 from tests.support.calibration_study import ROLLING, SLIDING
 
@@ -89,6 +92,18 @@ def test_published_pairs_are_rejected_or_kept(done):
     assert answers.rejected(other) == []
     far = SimpleNamespace(problem=done.problem, known=done.known, published=done.published.assign(**{SLIDING: 9.0}))
     assert answers.rejected(far) == []
+
+
+def test_what_materials_have_already_is_in_the_family_or_not(done):
+    """A pair that is recommended is kept; one at a corner of the range is rejected, and one beyond was not searched."""
+
+    def said(**values):
+        changed = with_values(done.parameters, done.pairs[RECOMMENDED] | values)
+        return answers.of_material(replace(done, parameters=changed))
+
+    assert said().startswith("The pair of the materials file (sliding friction ") and "is in the family: " in said()
+    assert "is rejected: " in said(**{SLIDING: 0.7, ROLLING: 0.7})
+    assert said(**{SLIDING: 0.9}).endswith("lies outside of the range that was searched.")
 
 
 def test_lights_of_a_calibration():

@@ -212,7 +212,8 @@ def test_the_page_is_that_of_every_study(folder):
 def test_the_verdict_answers_without_wear(folder):
     """Pairs, intervals and what decides, with lights of a calibration and the assumption that matters most."""
     points, lights, weightiest = verdict(page_parameters(study()), folder).blocks
-    assert points.items[0].startswith("The recommended pair (sliding friction 0.") and len(points.items) == 6
+    assert points.items[0].startswith("The recommended pair (sliding friction 0.") and len(points.items) == 7
+    assert points.items[-1].startswith("The pair of the materials file (sliding friction 0.")
     assert [each.what for each in lights.lights] == ["Reproduced", "Enough simulations", "Replicated", "Scale"]
     assert "discrepancy of the model" in weightiest.text
 
