@@ -123,9 +123,20 @@ def test_what_the_calibrations_pairs_give():
         "Discharge time (s)",
     )
     ours, published = off.loc["recommended"], off.loc["calibrated"]
-    assert f"({ours[draw]:+.1f} and {ours[repose]:+.1f} degrees)" in page
-    assert f"shear box ({ours[box]:+.1f} degrees" in page and f"discharges {-ours[time]:.1f} s too early" in page
-    assert f"gives shear angles {-published[box]:.1f} and {-published[draw]:.1f} degrees below" in page
+    assert f"gives the discharge time ({ours[time]:+.1f} s)" in page and f"shear box ({ours[box]:+.1f} degrees" in page
+    assert f"draw-down ({ours[draw]:+.1f} degrees) and angle of repose ({ours[repose]:+.1f} degrees)" in page
+    kept = found.loc["calibrated", "inside"]
+    assert kept[box] == "outside" and not (kept.drop(box) == "outside").any()
+    assert f"a shear angle of the shear box {-published[box]:.1f} degrees below the measured one" in page
+    shares = found["denser share"].groupby("pair").first().astype(float)
+    fits = f"{shares['calibrated']:.0%} of the posterior fits better than it, {shares['recommended']:.0%} than that"
+    assert fits.replace("%", " %") in page
+    of_gravel = re.search(r"materials file \(.*?\) is in the family: ([\d.]+) %", told(results))[1]
+    assert f"because it is in the family: {float(of_gravel):.0f} % of the posterior fits better" in page
+    ends = rows(results, "parameter", "searched from").set_index("parameter")[["low", "high"]].astype(float)
+    (low, high), (rolling_low, rolling_high) = ends.to_numpy()
+    assert f"a band at sliding friction {low:.2f} to {high:.2f} with rolling friction anywhere" in page
+    assert f"from {rolling_low:.2f} to {rolling_high:.2f}, which is told" in page
     angles = rows("rolling_models_results.md", "pair", "published", "cdt").iloc[0]
     assert f"gives {angles['cdt']}° under `cdt` (two packings), {angles['epsd2']}° under `epsd2`" in page
     assert f"where two packings of the calibration below give {found.loc[('calibrated', box), 'simulated']}°" in page
