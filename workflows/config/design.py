@@ -28,14 +28,11 @@ from bulkwear.workflows.config.deck_checks import check_own_words, template_faul
 from bulkwear.workflows.config.factors import FACTORS, can_tell, factors_of
 from bulkwear.workflows.config.law_settings import check_law, check_volume
 from bulkwear.workflows.config.laws_beside import check_beside
-from bulkwear.workflows.config.layers import (
-    ConfigError,
-    Layer,
-    display_name,
-)
+from bulkwear.workflows.config.layers import ConfigError, Layer, display_name
 from bulkwear.workflows.config.materials import check_calibrated_for, check_material_names, check_materials
 from bulkwear.workflows.config.optimise import Optimise, optimise_of, search_digest, with_search
 from bulkwear.workflows.config.packings import PACKINGS, Packings, named_by_rows, with_packings, without_packings
+from bulkwear.workflows.config.pin_checks import PIN_RANGE_CHECKS
 from bulkwear.workflows.config.run_checks import (
     COMMON_CHECKS,
     LAST_CHECKS,
@@ -55,13 +52,7 @@ from bulkwear.workflows.config.sources import (
 )
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.until import GOALS, UNTIL, Until, until_of
-from bulkwear.workflows.config.validation import (
-    check_given,
-    locate,
-    read_design,
-    unknown_name,
-    with_place,
-)
+from bulkwear.workflows.config.validation import check_given, locate, read_design, unknown_name, with_place
 from bulkwear.workflows.engine.case import Case, Run
 from bulkwear.workflows.engine.chain import sample_decks
 from bulkwear.workflows.engine.derived import laws_beside
@@ -386,7 +377,10 @@ def _checked_run(
     check_needed(layers, of_row, schema, "pattern", case.needed_pattern_keys(of_row, surface))
     given = (to_si(of_row), to_si(materials), to_si(row.values), surface)
     parameters = _placed(stack, case.run_parameters, *given)
-    check_run(CheckedRun(layers, of_row, row, parameters, columns), (*COMMON_CHECKS, *case.checks, *LAST_CHECKS))
+    check_run(
+        CheckedRun(layers, of_row, row, parameters, columns),
+        (*COMMON_CHECKS, *PIN_RANGE_CHECKS, *case.checks, *LAST_CHECKS),
+    )
     name = row.values["row"]
     return Run(name=f"{name}_{surface}" if surface else name, row=name, surface=surface, parameters=parameters)
 

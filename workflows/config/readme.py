@@ -14,6 +14,7 @@ from bulkwear.postproc.wear.laws import LAWS, Law, Parameter
 from bulkwear.workflows.config.columns import ANY_SETTING
 from bulkwear.workflows.config.law_settings import parameters_schema
 from bulkwear.workflows.config.layers import KeyPath, dotted
+from bulkwear.workflows.config.pin_checks import PIN_RANGE_CHECKS
 from bulkwear.workflows.config.run_checks import COMMON_CHECKS, LAST_CHECKS, Check
 from bulkwear.workflows.config.schema import leaves, load_schema, schema_files, subschema
 from bulkwear.workflows.config.validation import NEEDED, allowed_text
@@ -161,7 +162,7 @@ def readme() -> str:
     """Return the whole page."""
     sections = [f"## {title}\n\nKeys {where}.\n\n{table(name)}\n" for title, name, where in TABLES]
     cases = [section for name in case_names() for section in sections_of_case(name)]
-    common = f"## {CHECKS_TITLE}\n\n{listed((*COMMON_CHECKS, *LAST_CHECKS))}\n"
+    common = f"## {CHECKS_TITLE}\n\n{listed((*COMMON_CHECKS, *PIN_RANGE_CHECKS, *LAST_CHECKS))}\n"
     return "\n".join([INTRODUCTION, sections[0], wear_laws(), *sections[1:], common, *cases])
 
 

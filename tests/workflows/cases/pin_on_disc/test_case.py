@@ -138,6 +138,22 @@ FAULTS = [
         "command line: pin.material is 'gold', allowed is one of iron_ore.",
     ),
     (
+        {"pin": {"load_n": 1000}},
+        "command line: pin.load_n is 1000 for row c17-conserving, allowed is at most 394.271 N, under which the pin"
+        " sinks into the disc by 0.25 of its radius, by the moduli as simulated (found 0.465).",
+    ),
+    (
+        {"wear": {"law": "impact_threshold", "parameters": {"threshold_velocity_m_per_s": 0}}},
+        "command line: wear.law is 'impact_threshold' for row c17-conserving, allowed is one of archard, combined,"
+        " finnie, tangential_work: a pin slides, and makes no impacts.",
+    ),
+    (
+        {"wear": {"acceleration": 1e5}},
+        "config/designs/pin_on_disc_quick.csv, line 2, row c17-conserving: a wear coefficient, with its acceleration,"
+        " of 1.7e-06 1/Pa wears a deeper groove than 36 updates of 20.4 um can take, allowed is at most 1.36962e-07"
+        " 1/Pa.",
+    ),
+    (
         {"sample": {"width_mm": 9}},
         "command line: sample (a block of keys) is no known key, allowed are fidelity, particle_scale, packings, until,"
         " rows,"
@@ -152,6 +168,14 @@ def test_a_pin_that_cannot_run_is_refused_in_one_sentence(overrides, message):
     with pytest.raises(ConfigError) as caught:
         load_study("pin_on_disc", overrides=overrides)
     assert str(caught.value) == message
+
+
+def test_what_a_pins_refusal_names_is_enough():
+    """A load under which a pin rests on the disc, which has room for it, and an acceleration that updates take."""
+    heavy = {"pin": {"load_n": 394.271}, "disc": {"radius_mm": 26}}
+    assert load_study("pin_on_disc", overrides=heavy).runs
+    assert load_study("pin_on_disc", overrides={"wear": {"acceleration": 1.36962e-7 / 5.0e-11}}).runs
+    assert load_study("pin_on_disc", overrides={"wear": {"acceleration": 1e5, "deform": False}}).runs
 
 
 def test_a_fault_of_a_rows_own_value_names_the_table(config):
