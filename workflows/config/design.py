@@ -52,7 +52,7 @@ from bulkwear.workflows.config.sources import (
 )
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.until import GOALS, UNTIL, Until, until_of
-from bulkwear.workflows.config.validation import check_given, locate, read_design, unknown_name, with_place
+from bulkwear.workflows.config.validation import check_given, locate, read_design, show, unknown_name, with_place
 from bulkwear.workflows.engine.case import Case, Run
 from bulkwear.workflows.engine.chain import sample_decks
 from bulkwear.workflows.engine.derived import laws_beside
@@ -332,9 +332,10 @@ def _packings(sources: Sources, layers: tuple[Layer, ...], settings: dict[str, A
     if case.seed_setting:
         column = setting_columns(load_schema(f"cases/{case.name}/design"))[case.seed_setting]
         return with_packings(rows, settings, column, reduce(dict.__getitem__, case.seed_setting.split("."), settings))
-    if settings[PACKINGS] > 1:
+    if settings[PACKINGS] > 1 or UNTIL in settings:
+        key, allowed = (PACKINGS, "1") if settings[PACKINGS] > 1 else (UNTIL, "no such block")
         raise ConfigError(
-            f"{locate(layers, (PACKINGS,))}: {PACKINGS} is {settings[PACKINGS]}, allowed is 1 in studies of case"
+            f"{locate(layers, (key,))}: {key} is {show(settings[key])}, allowed is {allowed} in studies of case"
             f" {case.name}: {case.one_packing}."
         )
     return without_packings(rows)

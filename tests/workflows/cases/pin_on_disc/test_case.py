@@ -138,6 +138,11 @@ FAULTS = [
         "command line: pin.material is 'gold', allowed is one of iron_ore.",
     ),
     (
+        {"packings": 1, "until": {"width_fraction": 0.1, "most_packings": 8, "most_core_h": 10}},
+        "command line: until is a block of keys, allowed is no such block in studies of case pin_on_disc: runs start"
+        " from no bed.",
+    ),
+    (
         {"pin": {"load_n": 1000}},
         "command line: pin.load_n is 1000 for row c17-conserving, allowed is at most 394.271 N, under which the pin"
         " sinks into the disc by 0.25 of its radius, by the moduli as simulated (found 0.465).",
