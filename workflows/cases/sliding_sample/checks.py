@@ -6,6 +6,7 @@ import math
 
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.sliding_sample.parameters import THIN_BED_LAYERS
+from bulkwear.workflows.cases.sliding_sample.range_checks import LEAST_EXTENTS, RANGE_CHECKS
 from bulkwear.workflows.cases.sliding_sample.shape import clumps_stay_whole
 from bulkwear.workflows.cases.sliding_sample.study import PARTICLE_SCALE
 from bulkwear.workflows.config.optimise import OPTIMISE
@@ -20,17 +21,18 @@ from bulkwear.workflows.config.run_checks import (
     millimetres,
     pattern_fits,
     physical_modulus_known,
+    reaches,
 )
 from bulkwear.workflows.engine.derived import ADAPTIVE, PERIODIC, ROUNDING, WINDOW, window_lengths
 from bulkwear.workflows.engine.grains import CLUMP, grain_kind, largest_extent, smallest_radius
 from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
 PACKING = "packing"  # block of settings, of containers
-TINY_FRICTION = 1e-3  # -, of a floor that drives nothing
+LARGEST_AHEAD = 5.0  # m, as the schema has it for bed.ahead_mm
 LARGEST_TRAVEL = 100.0  # m, as the schema has it for sliding.travel_mm
 # -, of a periodic bed, in largest extents: in a narrower one a particle can touch a neighbour and that one's image, and
 # hangs between them. No wider bound, for small comparisons go down to 2.1; studies have 4.7 and more.
-LEAST_WIDTH_EXTENTS = 2.0
+LEAST_WIDTH_EXTENTS = LEAST_EXTENTS
 
 
 def containers_given(run: CheckedRun) -> Fault | None:
@@ -96,13 +98,20 @@ def floor_drives_bed(run: CheckedRun) -> Fault | None:
         return None
     covered = math.prod(sample[side] + 2.0 * skirt["skirt_width_m"] for side in ("width_m", "length_m"))
     floor, own = (run.parameters[name]["contact"]["sliding_friction"] for name in ("floor_material", "sample_material"))
-    if floor * (bed["width_m"] * skirt["bed_length_m"] - covered) >= own * covered:
+    least = math.inf
+    if floor > 0.0:
+        least = bed["ahead_m"] + covered * (floor + own) / floor / bed["width_m"] - skirt["bed_length_m"]
+    if reaches(bed["ahead_m"], least):
         return None
-    missing = covered * (floor + own) / max(floor, TINY_FRICTION) / bed["width_m"] - skirt["bed_length_m"]
+    if least > LARGEST_AHEAD:
+        return "bed.floor_material", (
+            f"a wall with more sliding friction than {floor:g} with bed.ends: periodic, where the floor drives the bed,"
+            " or bed.ends: walls"
+        )
     return (
         "bed.ahead_mm",
-        f"at least {millimetres(bed['ahead_m'] + missing)} with bed.ends: periodic, so that the friction of the floor"
-        " exceeds that of the sample and its skirt",
+        f"at least {millimetres(least)} with bed.ends: periodic, so that the friction of the floor exceeds that of the"
+        " sample and its skirt",
     )
 
 
@@ -254,4 +263,5 @@ SLIDING_CHECKS: tuple[Check, ...] = (
     clumps_set_in_motion,
     sampled_in_cycle,
     physical_modulus_known,
+    *RANGE_CHECKS,
 )
