@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault, millimetres, reaches
+from bulkwear.workflows.engine.derived import ROUNDING
 from bulkwear.workflows.engine.grains import largest_extent
 
 LEAST_EXTENTS = 2.0  # -, of a bed's length and, where it is periodic, its width, in largest extents of a particle
 LEAST_LAYERS = 0.5  # -, of a bed: most of the floor is bare below it, and studies have 1.4 and more
+# -, height of a bump over the smaller radius of its foot: the mesh of steeper ones fails now and then from 14 on
+MESHED_STEEPNESS = 12.0
+LEAST_SKIRT = 0.13  # -, width of a straight skirt over an element: triangles across 0.12 have less than 10 degrees
 
 
 def bed_has_particles(run: CheckedRun) -> Fault | None:
@@ -33,7 +38,36 @@ def bed_longer_than_arches(run: CheckedRun) -> Fault | None:
     )
 
 
+def bump_can_be_meshed(run: CheckedRun) -> Fault | None:
+    """A bump is no higher than a stated multiple of the smaller radius of its foot."""
+    pattern = pattern_of(run.parameters["pattern"])
+    if pattern is None or pattern.bump_axes is None:
+        return None
+    most = MESHED_STEEPNESS * min(pattern.half_width, pattern.half_length)
+    if pattern.highest_point <= most * (1.0 + ROUNDING):
+        return None
+    found = millimetres(pattern.highest_point)
+    return "", (
+        f"{pattern.noun} too high for a mesh: {found}, allowed is at most {millimetres(most)}, {MESHED_STEEPNESS:g}"
+        " times the smaller radius of its foot"
+    )
+
+
+def skirt_can_be_meshed(run: CheckedRun) -> Fault | None:
+    """A straight ramp up to the sample is wide enough for triangles."""
+    sample, skirt = run.parameters["sample"], run.parameters["derived"]["skirt_width_m"]
+    height, needed = sample["height_above_floor_m"], LEAST_SKIRT * sample["element_size_m"]
+    if sample["skirt_radius_m"] > 0.0 or reaches(skirt, needed):
+        return None
+    return "sample.height_above_floor_mm", (
+        f"at least {millimetres(height * needed / skirt)}, so that a skirt of this slope is {millimetres(needed)} wide,"
+        f" {LEAST_SKIRT:g} of an element (found {millimetres(skirt)})"
+    )
+
+
 RANGE_CHECKS: tuple[Check, ...] = (
     bed_has_particles,
     bed_longer_than_arches,
+    bump_can_be_meshed,
+    skirt_can_be_meshed,
 )

@@ -1,9 +1,13 @@
-"""What lies in its range and makes no bed of a sliding sample is refused at the start."""
+"""What lies in its range and makes no bed or no mesh of a sliding sample is refused at the start."""
 
+import math
 import re
 
 import pytest
 
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.sample import sliding_sample
+from bulkwear.workflows.cases.sliding_sample.range_checks import LEAST_SKIRT, MESHED_STEEPNESS
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.engine.project import Project
 
@@ -106,3 +110,31 @@ def test_a_periodic_bed_has_a_floor_that_drives_it(said):
             " bed.ends: periodic, where the floor drives the bed, or bed.ends: walls."
         ) in said(bed=bed, sample=sample)
     assert said(bed=bed.replace("periodic", "walls")) == WELL
+
+
+# ---------------------------------------------------------------- meshes
+
+
+def test_a_bump_too_steep_for_a_mesh_is_refused(said):
+    """Meshes of steeper ones ended in an IndexError; the height that is named can be meshed."""
+    sentence = said(height=30)
+    assert "line 2, row A: bump too high for a mesh: 30 mm, allowed is at most 24 mm, 12 times the smaller" in sentence
+    assert said(height=named(sentence, "at most")) == WELL
+    lattice = {"row_spacing": 20e-3, "column_spacing": 20e-3}
+    for radius in (1e-3, 5e-3):
+        pattern = ConvexPattern(radius, radius, MESHED_STEEPNESS * radius, **lattice)
+        assert pattern.shell(radius)
+
+
+def test_a_skirt_too_narrow_for_triangles_is_refused(said):
+    """It ended in a fault of the mesh; the height that is named can be meshed."""
+    slope = "skirt_slope_deg: 45, height_above_floor_mm: {}"
+    sentence = said(sample=slope.format(0.1))
+    assert "sample.height_above_floor_mm is 0.1 for row A, allowed is at least 0.1625 mm, so that a skirt" in sentence
+    least = named(sentence, "at least")
+    assert said(sample=slope.format(least)) == WELL
+    element = 1.5e-3
+    assert sliding_sample(0.06, 0.06, element, None, 1e-3 * least, math.pi / 4).triangles.size
+    with pytest.raises(ValueError, match="a gap between pattern, rim and skirt is too narrow"):
+        sliding_sample(0.06, 0.06, element, None, 1e-3 * least * 0.8, math.pi / 4)
+    assert LEAST_SKIRT * element == pytest.approx(1.2e-3 * least)
