@@ -1,4 +1,4 @@
-"""What lies in its range and makes no bed or no mesh of a sliding sample is refused at the start."""
+"""What lies in its range and makes no bed, no mesh or no wear of a sliding sample is refused at the start."""
 
 import math
 import re
@@ -138,3 +138,24 @@ def test_a_skirt_too_narrow_for_triangles_is_refused(said):
     with pytest.raises(ValueError, match="a gap between pattern, rim and skirt is too narrow"):
         sliding_sample(0.06, 0.06, element, None, 1e-3 * least * 0.8, math.pi / 4)
     assert LEAST_SKIRT * element == pytest.approx(1.2e-3 * least)
+
+
+# ---------------------------------------------------------------- wear
+
+
+def test_wear_beyond_what_updates_can_take_is_refused(said):
+    """A coefficient in mm3/(N m) that is taken for one in 1/Pa; the one that is named passes."""
+    sentence = said(wear="wear_coefficient_per_pa: 1.0e-6")
+    assert (
+        "line 2, row A: the bed's weight alone would wear 0.00341718 mm or more off the sample, allowed are 0.0005886"
+        " mm, what 3 updates can take: a wear coefficient, with its acceleration, of "
+    ) in sentence
+    most = float(re.search(r"of (\S+) 1/Pa at most \(found 1e-06\)", sentence)[1])
+    assert said(wear=f"wear_coefficient_per_pa: {most}") == WELL
+    assert said(wear="wear_coefficient_per_pa: 1.0e-6, deform: false") == WELL
+
+
+def test_wear_down_to_the_floor_is_refused(said):
+    """Also where cycles are as long as wear lets them be; such a run stopped on its way."""
+    sentence = said(wear="acceleration: 1.0e+9", sliding="travel_mm: 60, cycles: adaptive")
+    assert "the sample's height above the floor: a wear coefficient, with its" in sentence
