@@ -433,12 +433,12 @@ BAD_COMBINATIONS = [
     ),
     (
         {"sample": {"width_mm": 110}},
-        "command line: sample.width_mm is 110 for row R9, allowed is at most 106.262 mm,"
+        "command line: sample.width_mm is 110 for row R9, allowed is at most 106.261 mm,"
         " bed.width_mm less a skirt of 6.86921 mm on each side.",
     ),
     (
         {"bed": {"width_mm": 90}},
-        f"{QUICK}: sample.width_mm is 80 for row R9, allowed is at most 76.2616 mm,"
+        f"{QUICK}: sample.width_mm is 80 for row R9, allowed is at most 76.2615 mm,"
         " bed.width_mm less a skirt of 6.86921 mm on each side.",
     ),
     (

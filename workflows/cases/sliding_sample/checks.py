@@ -27,6 +27,7 @@ from bulkwear.workflows.engine.derived import ADAPTIVE, PERIODIC, ROUNDING, WIND
 from bulkwear.workflows.engine.grains import CLUMP, grain_kind, largest_extent, smallest_radius
 from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
+SHOWN_DIGITS = 6  # of a length in a sentence
 PACKING = "packing"  # block of settings, of containers
 LARGEST_AHEAD = 5.0  # m, as the schema has it for bed.ahead_mm
 LARGEST_TRAVEL = 100.0  # m, as the schema has it for sliding.travel_mm
@@ -61,8 +62,16 @@ def sample_in_bed(run: CheckedRun) -> Fault | None:
         return None
     return (
         "sample.width_mm",
-        f"at most {millimetres(room)}, bed.width_mm less a skirt of {millimetres(skirt)} on each side",
+        f"at most {_shown_inside(room, -1)}, bed.width_mm less a skirt of {millimetres(skirt)} on each side",
     )
+
+
+def _shown_inside(length: float, sign: int) -> str:
+    """Return a length (m) as a sentence names it, rounded down (sign -1) or up (1): a mesh must lie in
+    the domain.
+    """
+    digit = 10.0 ** (math.floor(math.log10(abs(length))) - SHOWN_DIGITS + 1)
+    return millimetres(digit * (math.floor, math.ceil)[sign > 0](length / digit)) if length else millimetres(length)
 
 
 def skirt_in_bed(run: CheckedRun) -> Fault | None:
@@ -70,7 +79,7 @@ def skirt_in_bed(run: CheckedRun) -> Fault | None:
     skirt = run.parameters["derived"]["skirt_width_m"]
     for key in ("ahead", "behind"):
         if run.parameters["bed"][f"{key}_m"] < skirt:
-            return f"bed.{key}_mm", f"at least {millimetres(skirt)}, the width of the sample's skirt"
+            return f"bed.{key}_mm", f"at least {_shown_inside(skirt, 1)}, the width of the sample's skirt"
     return None
 
 
@@ -80,7 +89,7 @@ def ramp_holds_bed(run: CheckedRun) -> Fault | None:
         run.parameters["sample"]["skirt_radius_m"],
         run.parameters["sliding"]["velocity_m_per_s"] ** 2 / GRAVITY,
     )
-    if radius == 0.0 or radius >= least:
+    if radius == 0.0 or reaches(radius, least):
         return None
     return (
         "sample.skirt_radius_mm",
@@ -121,7 +130,7 @@ def exchange_holds(run: CheckedRun) -> Fault | None:
     if bed["ends"] != WINDOW:
         return None
     least = window_lengths(run.parameters["particle"])[0]
-    if bed["exchange_m"] >= least:
+    if reaches(bed["exchange_m"], least):
         return None
     return (
         "bed.exchange_mm",
@@ -196,7 +205,7 @@ def cycle_long_enough(run: CheckedRun) -> Fault | None:
 def travel_within_reason(run: CheckedRun) -> Fault | None:
     """The travel that a test duration makes is at most 100 m."""
     travel = run.parameters["sliding"]["travel_m"]
-    return _travel_fault(run, "most", LARGEST_TRAVEL, "100 m of travel") if travel > LARGEST_TRAVEL else None
+    return None if reaches(LARGEST_TRAVEL, travel) else _travel_fault(run, "most", LARGEST_TRAVEL, "100 m of travel")
 
 
 def _travel_fault(run: CheckedRun, bound: str, travel: float, reason: str) -> Fault:

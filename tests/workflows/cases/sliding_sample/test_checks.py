@@ -41,3 +41,21 @@ def test_clumps_need_a_time_step_of_run_in():
         clumps(0)
     least = float(re.search(r"at least (\S+) mm", str(fault.value))[1])
     assert clumps(least).runs[0].parameters["derived"]["run_in_steps"] == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "block", "key", "bound"),
+    [
+        ({"sample": {"width_mm": 55, "skirt_slope_deg": 1.3}}, "sample", "width_mm", "at most"),
+        ({"bed": {"ahead_mm": 2}, "sample": {"skirt_slope_deg": 1.3}}, "bed", "ahead_mm", "at least"),
+        ({"sample": {"skirt_radius_mm": 10}}, "sample", "skirt_radius_mm", "at least"),
+        ({"bed": {"ends": "window", "exchange_mm": 1}}, "bed", "exchange_mm", "at least"),
+        ({"bed": {"ends": "periodic", "width_mm": 61}}, "bed", "ahead_mm", "at least"),
+    ],
+)
+def test_a_length_that_a_refusal_names_is_enough(changes, block, key, bound):
+    """Shown to six digits, half of them are rounded to the wrong side."""
+    with pytest.raises(ConfigError, match=rf"{block}\.{key} is .*allowed is {bound} (\S+) ") as fault:
+        tiny_study(**changes)
+    enough = float(re.search(rf"allowed is {bound} (\S+) ", str(fault.value))[1])
+    assert tiny_study(**changes | {block: {**changes[block], key: enough}}).runs

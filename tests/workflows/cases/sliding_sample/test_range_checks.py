@@ -159,3 +159,10 @@ def test_wear_down_to_the_floor_is_refused(said):
     """Also where cycles are as long as wear lets them be; such a run stopped on its way."""
     sentence = said(wear="acceleration: 1.0e+9", sliding="travel_mm: 60, cycles: adaptive")
     assert "the sample's height above the floor: a wear coefficient, with its" in sentence
+
+
+def test_the_longest_test_duration_that_is_named_is_allowed(said):
+    """100 m at 1 m/s are 0.02777... h."""
+    sliding = "test_duration_h: {}, cycles: 3"
+    most = named(said(sliding=sliding.format(10)), "at most")
+    assert said(sliding=sliding.format(most)) == WELL
