@@ -342,6 +342,7 @@ def progress_and_information(
         before += int(part["simulations"].max())
     left.axhline(stop, color="black", linestyle="--", linewidth=1.0, label="stopping rule")
     left.set(xlabel="Simulations", ylabel="Surrogate's share of the variance (-)", ylim=(0.0, 1.0))
+    left.xaxis.get_major_locator().set_params(integer=True)
     left.legend()
     names = [response_name(name) for name in information["response"]][::-1]
     right.barh(names, information["information_bits"][::-1], height=0.5, color=OURS)

@@ -110,6 +110,8 @@ def test_progress_shows_the_stopping_rule():
     figure = plots.progress_and_information(looks, 0.5, information, REMARKS)
     np.testing.assert_allclose(figure.axes[0].lines[0].get_ydata(), [0.8, 0.4])
     assert figure.axes[0].lines[1].get_ydata()[0] == 0.5
+    ticks = figure.axes[0].get_xticks()
+    np.testing.assert_array_equal(ticks, np.round(ticks))  # of simulations there are no halves
     assert "(bit)" in figure.axes[1].get_xlabel()
 
 
