@@ -1,4 +1,4 @@
-"""The figures of `benchmarks.rolling_models` and `benchmarks.tilted_bed`."""
+"""The figures of `benchmarks.rolling_models`, `benchmarks.calibration_models` and `benchmarks.tilted_bed`."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from benchmarks.rolling_page import MODELS, differences
-from bulkwear.postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, new_figure
+from bulkwear.postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, facets, label_all, new_figure
 from bulkwear.postproc.statistics.intervals import Estimate, estimate
-from bulkwear.workflows.cases.calibration.responses import response_name
+from bulkwear.workflows.cases.calibration.outcome import Calibrated
+from bulkwear.workflows.cases.calibration.plots.responses import draw_family, family_handles
+from bulkwear.workflows.cases.calibration.responses import parameter_name, response_name
 
 LOOKS = dict(zip(MODELS, ((BLUE, "o"), (ORANGE, "s"), ("#009E73", "^"), (OTHER_COLOUR, "D")), strict=True))
 HEIGHT = 6.2  # inches
@@ -71,4 +73,22 @@ def packings_by_model(
     axes.set_xticks(range(len(means)), list(means))
     axes.set(xlabel="Rolling model", ylabel=label, xlim=(-0.5, len(means) - 0.5))
     axes.grid(axis="x", visible=False)
+    return figure
+
+
+def families(done: Mapping[str, Calibrated], remarks: Sequence[str]) -> Figure:
+    """Draw a panel per model: the pairs of frictions that hold 50 and 95 % of what fits, the simulations, the
+    recommended pair and the one that it is compared with.
+
+    done: finished calibrations of two parameters, by model
+    """
+    figure = new_figure(remarks, HEIGHT)
+    panels = facets(figure, list(done), sharey=True, most=2)
+    for model, each in done.items():
+        draw_family(panels[model], each.family, each.everything, each.pairs)
+        panels[model].set_title(model, loc="left")
+    names = [parameter_name(name) for name in each.problem.names]
+    label_all(figure, len(done) > 1, *names)
+    handles = family_handles({pair: "the source's pair" if pair == each.compared else pair for pair in each.pairs})
+    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
     return figure

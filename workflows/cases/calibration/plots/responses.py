@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
@@ -183,30 +184,41 @@ def family(
     axes = figure.subplots(1, len(kinds), squeeze=False)[0]
     for each, (first, second) in zip(axes, kinds, strict=True):
         part = table[(table["first"] == first) & (table["second"] == second)]
-        count = part["first_value"].nunique()
-        x, y, share = (
-            part[name].to_numpy().reshape(count, -1) for name in ("first_value", "second_value", "denser_share")
-        )
-        each.contourf(x, y, share, levels=[-0.01, CORE_SHARE, FAMILY_SHARE], cmap=FAMILY_COLOURS)
-        each.use_sticky_edges = False  # or marks at the ends of the range would be cut
-        each.scatter(simulations[first], simulations[second], s=14, c="black", marker="x", linewidths=0.9, zorder=3)
-        for name, values in pairs.items():
-            look = _pair_look(name)
-            each.plot(values[first], values[second], markersize=9, zorder=4, **look)
+        draw_family(each, part, simulations, pairs)
         each.set(xlabel=parameter_name(first), ylabel=parameter_name(second))
-    handles = [
+    handles = family_handles({name: _pair_label(name, values) for name, values in pairs.items()})
+    figure.legend(handles=handles, loc="outside right center")
+    return figure
+
+
+def draw_family(
+    axes: Axes, table: pd.DataFrame, simulations: pd.DataFrame, pairs: Mapping[str, Mapping[str, float]]
+) -> None:
+    """Draw the regions of two parameters with 50 and 95 % of the posterior, the simulations and the pairs.
+
+    table: as from `responses.family_table`, of these two alone
+    """
+    count, first, second = table["first_value"].nunique(), table["first"].iloc[0], table["second"].iloc[0]
+    x, y, share = (
+        table[name].to_numpy().reshape(count, -1) for name in ("first_value", "second_value", "denser_share")
+    )
+    axes.contourf(x, y, share, levels=[-0.01, CORE_SHARE, FAMILY_SHARE], cmap=FAMILY_COLOURS)
+    axes.use_sticky_edges = False  # or marks at the ends of the range would be cut
+    axes.scatter(simulations[first], simulations[second], s=14, c="black", marker="x", linewidths=0.9, zorder=3)
+    for name, values in pairs.items():
+        axes.plot(values[first], values[second], markersize=9, zorder=4, **_pair_look(name))
+
+
+def family_handles(labels: Mapping[str, str]) -> list[Artist]:
+    """Return what explains `draw_family`; labels: of the pairs, by name."""
+    return [
         *(
             Patch(color=FAMILY_COLOURS(k), label=f"{share:.0%} of the posterior")
             for k, share in enumerate((CORE_SHARE, FAMILY_SHARE))
         ),
         Line2D([], [], linestyle="", marker="x", color="black", markersize=5, label="simulated"),
-        *(
-            Line2D([], [], markersize=9, label=_pair_label(name, values), **_pair_look(name))
-            for name, values in pairs.items()
-        ),
+        *(Line2D([], [], markersize=9, label=label, **_pair_look(name)) for name, label in labels.items()),
     ]
-    figure.legend(handles=handles, loc="outside right center")
-    return figure
 
 
 def _pair_look(name: str) -> dict[str, Any]:
