@@ -24,6 +24,7 @@
 #include "particle_order.h"
 #include "private_member.h"
 #include "rolling/fix_spin_friction.h"
+#include "rolling/fix_turning_friction.h"
 #include "rolling/rolling_models.h"
 #include "search/wall_search.h"
 #include "signal_handling.h"
@@ -43,8 +44,9 @@ Fix* create_load_ledger(LAMMPS* lammps, int narg, char** arg) {
   return new load_ledger::FixLoadLedger(lammps, narg, arg);
 }
 
-Fix* create_spin_friction(LAMMPS* lammps, int narg, char** arg) {
-  return new rolling::FixSpinFriction(lammps, narg, arg);
+template <typename Friction>
+Fix* create_friction(LAMMPS* lammps, int narg, char** arg) {
+  return new Friction(lammps, narg, arg);
 }
 
 void list_kernels() {
@@ -138,7 +140,8 @@ int main(int argc, char** argv) {
   LAMMPS* lammps = new LAMMPS(argc, argv, MPI_COMM_WORLD);
   auto& styles = *(lammps->modify->*member(FixMap{}));
   styles["load/ledger"] = create_load_ledger;
-  styles["rolling/own_spin"] = create_spin_friction;
+  styles["rolling/own_spin"] = create_friction<rolling::FixSpinFriction>;
+  styles["rolling/rvd"] = create_friction<rolling::FixTurningFriction>;
   rolling::add_rolling_models();
   wall_search::prove(lammps);
   lammps->input->file();

@@ -24,6 +24,7 @@ PAIRS, APART = 20, 0.05  # -, m
 SHORT, LONG = 1e-10, 5e-6  # s: within one short step nothing moves; a long one stops spins within hundreds
 TORQUE = 1e-5  # relative: the solver's normal at a wall is not quite of length 1
 STOPPED, GROWTH = 1e-9, 1e-12  # rad/s, and relative: rounding
+BLOCK = 3  # -, spheres along each side of a cube
 GRAVITY = 9.81  # m/s2
 ACCELERATION = 0.01  # relative: the lever of the contact is shorter than the radius by half of the overlap
 RESTARTED = 1e-9  # relative: rounding, which rolling does not amplify
@@ -160,6 +161,49 @@ def test_no_energy_is_made(model, tmp_path):
     resisted = last.reshape(-1, 3) if model == "own_spin" else tangential(last.sum(axis=1), pairs()[3])
     np.testing.assert_allclose(resisted, 0.0, atol=STOPPED)
     assert np.abs(spin[0]).max() > 1.0
+
+
+def block_deck(model, spins, ranks=1, steps=2000, every=1):
+    """Spheres in a cube of three times three times three that touch and are held where they are, on a floor."""
+    radius, apart = RADII[0], 2.0 * RADII[0] - OVERLAP
+    cells = np.stack(np.meshgrid(*[apart * np.arange(BLOCK)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    centres = cells + np.array([-apart, 0.3 - apart, radius - OVERLAP])
+    head = HEAD.format(model=model, step=LONG, friction=0.0, ranks=ranks)
+    hold = "fix motion all nve/sphere\nfix hold all setforce 0.0 0.0 0.0\n"
+    dump = DUMP.format(every=every)
+    return (
+        head
+        + placed(centres, np.full(len(centres), radius), spins)
+        + WALLS["plane"].format(model=model)
+        + hold
+        + (f"{dump}run {steps}\n")
+    )
+
+
+def block_spins(size):
+    """Random spins (27, 3) of the spheres of a cube; size: rad/s."""
+    return np.random.default_rng(12).normal(0.0, size, (BLOCK**3, 3))
+
+
+@pytest.mark.parametrize("spin", [1e-9, 20.0])
+@pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
+def test_many_contacts_make_no_energy(model, spin, tmp_path):
+    """Up to six contacts on a sphere stop it together: rotational energy falls from step to step, also where each of
+    them alone could stop the spin within one.
+    """
+    found = simulated(tmp_path, block_deck(model, block_spins(spin)))["spin"]
+    energy = (found**2).sum(axis=(1, 2))
+    assert (np.diff(energy) <= GROWTH * energy[0]).all() and energy[-1] < energy[0]
+
+
+@pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
+def test_ranks_do_not_matter(model, tmp_path):
+    """Spheres with contacts on both sides of the border between ranks turn as on a single one."""
+    one, two = (
+        simulated(tmp_path / str(ranks), block_deck(model, block_spins(20.0), ranks, 50, 50), ranks)["spin"][-1]
+        for ranks in (1, 2)
+    )
+    np.testing.assert_allclose(two, one, rtol=0.0, atol=RESTARTED * np.abs(one).max())
 
 
 def slope_deck(model, slope, step, seconds, wall="mesh"):
