@@ -18,7 +18,7 @@ import numpy as np
 import pandas as pd
 
 TIMED = ("cost.csv", "solver_cost.csv", "forecast.csv", "ranks.csv")  # of tables that tell of the machine
-TIMED_COLUMNS = ("solver_s", "processor_s", "other_s", "other_processor_s", "wall_s")
+OF_MACHINE_OR_CODE = ("simulated_by", "solver_s", "processor_s", "other_s", "other_processor_s", "wall_s")
 SKIPPED_FOLDERS = ("logs", "decks", "superseded")
 
 
@@ -44,7 +44,7 @@ def difference(before: pd.DataFrame, after: pd.DataFrame, names: Mapping[str, st
     if len(before) != len(after):
         return f"{len(after)} rows instead of {len(before)}"
     worst, where = 0.0, ""
-    for name in before.columns.difference(TIMED_COLUMNS):
+    for name in before.columns.difference(OF_MACHINE_OR_CODE):
         old, new = before[name], after[name]
         if pd.api.types.is_numeric_dtype(old) and pd.api.types.is_numeric_dtype(new):
             apart = _apart(old.to_numpy(dtype=float), new.to_numpy(dtype=float))

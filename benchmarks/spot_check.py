@@ -4,9 +4,9 @@
     python -m benchmarks.spot_check --page chute_results_quick
 
 Each version is cloned into a folder of its own (results/spot_checks/<commit>) and set up there; the first row of the
-study's design runs at quick fidelity, one packing of it. What comes of it goes to docs/results_checks.json, and
-`make results` no longer calls such a page older than the code. Exit code 1 where numbers differ or cannot be
-had.
+study's design runs at quick fidelity, one packing of it. Of bulk tests, in which nothing wears, a shear box runs. What
+comes of it goes to docs/results_checks.json, and `make results` no longer calls such a page older than the code. Exit
+code 1 where numbers differ or cannot be had.
 """
 
 from __future__ import annotations
@@ -17,10 +17,14 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from benchmarks import rolling_models
+from benchmarks.rolling_models import CALIBRATED, SHEAR_BOX
 from benchmarks.same_results import compare, tables
+from benchmarks.tilted_bed import CASE, REFERENCE
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.project import PACKAGE, work_here
 from bulkwear.workflows.engine.provenance import code_of_cases
@@ -32,9 +36,26 @@ from bulkwear.workflows.results.remake import chosen
 FIDELITY = "quick"  # of what is simulated again, whatever the page's: standard takes hours
 ONE_PACKING = {"packings": 1}
 WEAR, WORN_RUN = "wear.csv", "worn_run"  # of each run, by the file contract, and the rule that makes it
+SNAKEMAKE = (".venv/bin/snakemake", "--workflow-profile", "workflows/profiles/default")
 FOLDER = Path("results/spot_checks")
 # Relative: a sum in another order. Of a bed in which one bit differs the tables differ by per cents soon after.
 ROUND_OFF = 1e-9
+
+
+@dataclass(frozen=True)
+class Sample:
+    """What is simulated again of a study: row of its design, or pair of frictions, and fidelity.
+
+    runs: folders of what it makes; table: that each of them must have; place: in a clone, where they are; command:
+    that makes them there
+    """
+
+    row: str
+    fidelity: str
+    runs: tuple[str, ...]
+    table: str
+    place: Path
+    command: tuple[str, ...]
 
 
 class VersionError(RuntimeError):
@@ -51,29 +72,46 @@ def wanted(origin: Origin, docs: Path) -> list[str]:
     return list(dict.fromkeys(str(each.found["commit"]) for each in old if each.found["commit"]))
 
 
-def runs_of_first_row(study: str) -> tuple[str, list[str]]:
-    """Return the first row of a study's design, which most designs begin with what others are held against, and the
-    names of its runs. Raises VersionError where nothing wears.
+def sample_of(study: str) -> Sample:
+    """Return what is simulated again of a study: the first row of its design, which most designs begin with what others
+    are held against; of bulk tests a shear box. Raises VersionError where there is neither.
     """
     row = str(load_study(study, overrides={"fidelity": FIDELITY, **ONE_PACKING}).design_rows[0]["row"])
-    chosen_alone = load_study(study, overrides={"fidelity": FIDELITY, **ONE_PACKING, "rows": [row]})
-    if WORN_RUN not in chosen_alone.case.solver_rules:
-        raise VersionError(f"{study}: its runs make no {WEAR}, allowed is a study of worn runs; redo its page.")
-    return row, [run.name for run in chosen_alone.runs]
+    settings = {"fidelity": FIDELITY, **ONE_PACKING, "rows": [row]}
+    chosen_alone = load_study(study, overrides=settings)
+    if WORN_RUN in chosen_alone.case.solver_rules:
+        place, runs = Path("results", study), tuple(run.name for run in chosen_alone.runs)
+        files, told = (
+            (f"{place}/{run}/{WEAR}" for run in runs),
+            (f"{key}={json.dumps(it)}" for key, it in settings.items()),
+        )
+        return Sample(row, FIDELITY, runs, WEAR, place, (*SNAKEMAKE, *files, "--config", *told))
+    if chosen_alone.case.name == CASE:
+        return sample_of_bulk_tests()
+    raise VersionError(
+        f"{study}: its runs make no {WEAR}, allowed is a study of worn runs or bulk tests; redo its page."
+    )
 
 
-def solved(commit: str, study: str, row: str, runs: Sequence[str], folder: Path) -> Path:
-    """Return the results of a row's runs by a commit, in its clone; goes on where it was left. Raises VersionError."""
+def sample_of_bulk_tests() -> Sample:
+    """Return the shear box of the pair that every calibration is compared with, under the studies' rolling model."""
+    place, asked = Path("results", "bulk_test"), ["--models", REFERENCE, "--tests", SHEAR_BOX, "--pairs", CALIBRATED]
+    kept = [word for option in ("--folder", "--output") for word in (option, f"{place}/{SHEAR_BOX}")]
+    command = (".venv/bin/python", "-m", "benchmarks.rolling_models", *asked, "--packings", "1", *kept)
+    return Sample(CALIBRATED, rolling_models.FIDELITY, (SHEAR_BOX,), rolling_models.FILE, place, command)
+
+
+def solved(commit: str, sample: Sample, folder: Path) -> Path:
+    """Return the results of a sample by a commit, in its clone; goes on where it was left. Raises VersionError."""
     clone = (folder / commit).resolve()
     if not clone.exists():
         _call(["git", "clone", "--quiet", "--no-checkout", str(PACKAGE), str(clone)], Path())
         _call(["git", "checkout", "--quiet", "--detach", commit], clone)
     _call(["make", "--silent", "setup"], clone)
-    command = [".venv/bin/snakemake", "--workflow-profile", "workflows/profiles/default"]
-    wanted_files = [f"results/{study}/{run}/{WEAR}" for run in runs]
-    settings = {"fidelity": FIDELITY, **ONE_PACKING, "rows": [row]}
-    _call([*command, *wanted_files, "--config", *(f"{key}={json.dumps(it)}" for key, it in settings.items())], clone)
-    return clone / "results" / study
+    for run in sample.runs:
+        (clone / sample.place / run).mkdir(parents=True, exist_ok=True)
+    _call(sample.command, clone)
+    return clone / sample.place
 
 
 def _call(command: Sequence[str], where: Path) -> None:
@@ -89,15 +127,15 @@ def spot_check(origin: Origin, before: str, folder: Path) -> SpotCheck:
     code = code_of_cases((origin.case,))
     if code["commit"] is None or code["changed"]:
         raise VersionError(f"{PACKAGE}: files that matter are not committed, allowed is a commit of git.")
-    row, runs = runs_of_first_row(origin.checked_by)
-    old, new = (solved(commit, origin.checked_by, row, runs, folder) for commit in (before, code["commit"]))
-    compared = {run: tables(old / run) for run in runs}
-    if missing := [run for run, found in compared.items() if WEAR not in found]:
-        raise VersionError(f"{old}: found no {WEAR} of {', '.join(missing)}, allowed is one of each run.")
-    faults = [f"{run}/{fault}" for run in runs for fault in compare(old / run, new / run, {}, ROUND_OFF)]
+    sample = sample_of(origin.checked_by)
+    old, new = (solved(commit, sample, folder) for commit in (before, code["commit"]))
+    compared = {run: tables(old / run) for run in sample.runs}
+    if missing := [run for run, found in compared.items() if sample.table not in found]:
+        raise VersionError(f"{old}: found no {sample.table} of {', '.join(missing)}, allowed is one of each run.")
+    faults = [f"{run}/{fault}" for run in sample.runs for fault in compare(old / run, new / run, {}, ROUND_OFF)]
     count = sum(len(found) for found in compared.values())
-    day = f"{datetime.now(UTC):%Y-%m-%d}"
-    return SpotCheck(origin.checked_by, FIDELITY, row, before, code["commit"], code, day, count, "; ".join(faults))
+    day, what = f"{datetime.now(UTC):%Y-%m-%d}", (origin.checked_by, sample.fidelity, sample.row)
+    return SpotCheck(*what, before, code["commit"], code, day, count, "; ".join(faults))
 
 
 def check_pages(origins: Iterable[Origin], docs: Path, folder: Path) -> bool:

@@ -6,6 +6,9 @@ import pandas as pd
 import pytest
 
 import benchmarks.spot_check as module
+from benchmarks.rolling_models import parser_of
+from bulkwear.workflows.cases.calibration.case import pairs_file
+from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.provenance import code_of_cases
 from bulkwear.workflows.report.provenance_of_pages import Origin
 from bulkwear.workflows.report.spot_checks import read_checks
@@ -31,7 +34,7 @@ def page(now):
 
 def simulated(monkeypatch, folder, **volumes):
     """Let versions have simulated, each its volume."""
-    _, runs = module.runs_of_first_row("which_law")
+    runs = module.sample_of("which_law").runs
     for commit, volume in volumes.items():
         for run in runs:
             (folder / commit / run).mkdir(parents=True)
@@ -68,7 +71,7 @@ def test_another_number_is_a_difference(monkeypatch, page, tmp_path):
 def test_code_that_is_not_committed_and_runs_without_tables_are_refused(monkeypatch, now, page, tmp_path):
     """A check of what nobody can look up says nothing, nor does one of beds alone."""
     simulated(monkeypatch, tmp_path, before=1.25)
-    (_, (run,)) = module.runs_of_first_row("which_law")
+    (run,) = module.sample_of("which_law").runs
     (tmp_path / "before" / run).rename(tmp_path / "before" / "bed_1")
     with pytest.raises(module.VersionError, match=f"found no wear.csv of {run}"):
         module.spot_check(page, "before", tmp_path)
@@ -78,15 +81,27 @@ def test_code_that_is_not_committed_and_runs_without_tables_are_refused(monkeypa
 
 
 def test_the_runs_of_one_packing_of_the_first_row_are_asked_for(monkeypatch, tmp_path):
-    """By the files of its runs, in the clone of that commit; a study in which nothing wears is refused."""
+    """By the files of its runs, in the clone of that commit."""
     called = []
     monkeypatch.setattr(module, "_call", lambda command, where: called.append((command, where)))
-    row, runs = module.runs_of_first_row("demo")
-    assert (row, runs) == ("R5", ["R5_convex", "R5_plain"])
+    sample = module.sample_of("demo")
+    assert (sample.row, sample.runs) == ("R5", ("R5_convex", "R5_plain"))
     (tmp_path / "before").mkdir()
-    assert module.solved("before", "demo", row, runs, tmp_path) == tmp_path / "before/results/demo"
+    assert module.solved("before", sample, tmp_path) == tmp_path / "before/results/demo"
     command, where = called[-1]
     assert where == tmp_path / "before"
     assert {"results/demo/R5_convex/wear.csv", "results/demo/R5_plain/wear.csv", "packings=1"} <= set(command)
-    with pytest.raises(module.VersionError, match=r"calibration: its runs make no wear\.csv"):
-        module.runs_of_first_row("calibration")
+
+
+def test_of_bulk_tests_a_shear_box_is_asked_for(monkeypatch, tmp_path):
+    """By a command that the benchmark itself takes, into the folder whose tables are compared."""
+    called = []
+    monkeypatch.setattr(module, "_call", lambda command, where: called.append(command))
+    sample = module.sample_of("calibration")
+    (tmp_path / "before").mkdir()
+    place = module.solved("before", sample, tmp_path)
+    words = called[-1][list(called[-1]).index("benchmarks.rolling_models") + 1 :]
+    given = parser_of(pd.read_csv(pairs_file(load_study("calibration")))).parse_args(words)
+    assert (given.tests, given.pairs, given.packings) == (["shear_box"], ["calibrated"], 1)
+    assert tmp_path / "before" / given.folder == tmp_path / "before" / given.output == place / sample.runs[0]
+    assert (place / sample.runs[0]).is_dir()

@@ -25,9 +25,13 @@ from bulkwear.workflows.report.spot_checks import SpotCheck, as_new_as, failed, 
 FILE, CHANGES = "results.json", "results_changes.csv"  # in docs
 LINE = 118  # characters of a line of prose
 BEGIN, END = "<!-- older than the code -->", "<!-- end -->"
-# Study, or page of none, -> the cheapest study whose spot checks speak for it: of spheres under the studies' own
-# rolling model and law, as it is. What it does not go through, as beds in a window, it does not check.
-STANDS_FOR = dict.fromkeys(("demo", "screening", "particle_size", "optimised_pattern", "stiffness.md"), "demo")
+# Study, or page of none, -> the cheapest study whose spot checks speak for it: of the same case, with what it goes
+# through as it is. What it does not go through, as beds in a window or other rolling models, it does not check.
+STANDS_FOR = {
+    **dict.fromkeys(("demo", "screening", "particle_size", "optimised_pattern", "stiffness.md"), "demo"),
+    **dict.fromkeys(("critical_scale_results.md", "travelling_window_results.md", "worn_bump.csv"), "demo"),
+    **dict.fromkeys(("tilted_bed_results.md", "calibration_models_results.md"), "calibration"),
+}
 BLOCK = re.compile(rf"{BEGIN}\n.*?{END}\n\n", re.DOTALL)
 
 

@@ -30,15 +30,17 @@ def test_checks_that_lead_to_todays_code_make_a_page_as_new():
 
 
 def test_the_demo_speaks_for_pages_of_sliding_samples():
-    """Of those named, also of a benchmark, which is of no study; of clumps, of other rolling models and of beds in a
-    window it says nothing.
+    """Of those named, also of a benchmark, which is of no study; not of clumps, and not of bulk tests, for which a
+    shear box speaks.
     """
     sample = replace(ORIGIN, case="sliding_sample", study="screening")
     bench = replace(sample, study="", command="make it")
     checks = [replace(each, study="demo") for each in (TO_SECOND, TO_NOW)]
     assert older(sample, [], NOW, checks) == older(replace(bench, page="stiffness.md"), [], NOW, checks) == []
     assert older(replace(sample, study="grain_shape"), [], NOW, checks)
-    assert older(replace(bench, page="travelling_window_results.md"), [], NOW, checks)
+    box = replace(bench, page="tilted_bed_results.md")
+    assert older(box, [], NOW, checks)
+    assert older(box, [], NOW, [replace(each, study="calibration") for each in checks]) == []
 
 
 def test_other_numbers_are_told_and_lead_nowhere():
