@@ -29,7 +29,7 @@ from bulkwear.workflows.forecast.rates import machine_facts
 # modules with `measures(folder, quick)`; what simulates comes last
 MODULES = (
     *("dry_run", "contact_reader", "displacement", "remesh", "wear_steps", "meshing", "own_mesh", "study_share"),
-    *("ledger_overhead", "solver_speed", "ranks", "full_size"),
+    *("ledger_overhead", "solver_speed", "rolling_cost", "ranks", "full_size"),
 )
 BY_STUDY = "study_share"  # whose lines of a study begin with its name and fidelity, up to a comma
 BUSY = 0.5  # -, load of the machine, in processes, above which wall times mean little

@@ -104,8 +104,8 @@ def test_which_rolling_model_is_nearest_and_when_a_layer_flows():
     assert f"`cdt` {-cdt.iloc[0]:.1f} and `rvd` {-rvd.iloc[0]:.0f} below, of two packings" in page
     layers = table("tilted_bed.csv").groupby("model")[["flow_angle_deg", "creep_mm_per_s"]].mean()
     flow, creep = layers["flow_angle_deg"].round(), layers["creep_mm_per_s"]
-    assert flow["cdt"] == flow["rvd"]
-    words = f"{flow['cdt']:.0f} (`cdt`, `rvd`), {flow['epsd2']:.0f} (`epsd2`) and {flow['own_spin']:.0f} degrees"
+    assert flow["epsd2"] == flow["rvd"]
+    words = f"{flow['cdt']:.0f} (`cdt`), {flow['epsd2']:.0f} (`epsd2`, `rvd`) and {flow['own_spin']:.0f} degrees"
     assert f"begins to flow at {words} (`own_spin`)" in page
     still = creep[["epsd2", "own_spin"]].max()
     assert f"creeps at {creep['cdt']:.1f} and {creep['rvd']:.1f} mm/s, under the others at {still:.3f} and less" in page
