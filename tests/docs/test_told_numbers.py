@@ -2,6 +2,7 @@
 
 import re
 
+from bulkwear.workflows.report.time_step import SHOWN
 from tests.support.told import rows, table, told
 
 SHORTEST, CHOSEN = "0.1", "0.4"  # time steps over the Rayleigh time
@@ -239,3 +240,10 @@ def test_what_machines_pages_say_of_sliding_contacts_and_of_a_patterned_liner():
     page = told("rolling_friction.md")
     assert "lasts {:.1f} times as long as the plain one under `own_spin` ({:.1f} to {:.1f})".format(*quick) in page
     assert "older code, {:.1f} times ({:.1f} to {:.1f})".format(*standard) in page
+
+
+def test_the_time_steps_that_pages_call_shown_are_those_of_the_table():
+    """The light on a page goes by the limits that all four responses keep."""
+    found = rows("time_step_limits_results.md", "model", "plain, sliding work", "plain, impact energy")
+    limits = found.set_index("model")["all of them"].astype(float)
+    assert {model.replace(" ", "_"): limit for model, limit in limits.items()} == SHOWN

@@ -16,6 +16,7 @@ from bulkwear.workflows.report.friction import friction_light
 from bulkwear.workflows.report.page_parameters import answers_of_study, page_of
 from bulkwear.workflows.report.sections import CARE, SOUND, WEAK, Block, Light, Lights, Points, Section, Text
 from bulkwear.workflows.report.text import largest_carried_share, number, range_text, simplifications
+from bulkwear.workflows.report.time_step import time_step_light
 
 TITLE = "Verdict"
 LEAST_CARRIED, MUCH_CARRIED = 0.01, 0.1  # -, of the worn volume: less changes no digit; more is another shape
@@ -42,7 +43,8 @@ def verdict(study: Mapping[str, Any], folder: Path) -> Section:
 
     A case's module `page` may have `answers(folder)` and `facts(study, folder)`, sentences; `steadiness(folder)`, an
     answer of `statistics.steady` per run, where wear per metre does not tell it; and WEIGHTIEST, the name of the
-    simplification that its answers hang on most. A case without wear has `lights(study, folder)` of its own.
+    simplification that its answers hang on most; ROLLS, false where nothing rolls. A case without wear has
+    `lights(study, folder)` of its own.
     """
     page, summary = page_of(study["case"]), read_summary(folder / "summary.csv")
     facts = page.facts(study, folder) if hasattr(page, "facts") else []
@@ -66,6 +68,7 @@ def lights_of_wear(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame
         steady_light(*_judged_steady(page, study, folder)),
         cap_light(study, summary),
         friction_light(study, folder),
+        *([time_step_light(study)] if getattr(page, "ROLLS", True) else []),
         packings_light(pd.read_csv(folder / "design.csv", dtype=str)),
     ]
 

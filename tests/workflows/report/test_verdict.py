@@ -7,6 +7,7 @@ import pytest
 from bulkwear.postproc.statistics.steady import DRIFTING, FEWEST_VALUES, STEADY, UNSAID
 from bulkwear.workflows.report import verdict
 from bulkwear.workflows.report.sections import CARE, SOUND, WEAK
+from bulkwear.workflows.report.time_step import SHOWN, time_step_light
 
 
 @pytest.mark.parametrize(
@@ -69,3 +70,17 @@ def test_wear_per_metre_tells_whether_a_run_is_steady():
     assert said[0] == "Of 1 of 2 runs it cannot be said: they are too short."
     assert said[1] == "Of 1 of 1 runs it cannot be said: they are of wear cycles of unequal travel."
     assert said[2] == "Of 3 of 3 runs it cannot be said: 1 too short, 2 of wear cycles of unequal travel."
+
+
+def test_a_time_step_beyond_what_is_shown_calls_for_care():
+    """By the longest step under each rolling model; a model without a limit is named."""
+
+    def light(*solvers):
+        runs = [{"rolling_friction": model, "rayleigh_fraction": fraction} for model, fraction in solvers]
+        return time_step_light({"parameters": {str(number): {"solver": run} for number, run in enumerate(runs)}})
+
+    assert light(("own_spin", 0.2), ("own_spin", SHOWN["own_spin"])).state == SOUND
+    found = light(("own_spin", 0.4), ("cdt", 0.05), ("cdt", 0.4))
+    assert found.state == CARE and "0.4 of the Rayleigh time under cdt, shown up to 0.1" in found.said
+    assert "own_spin" not in found.said
+    assert "under off, of which no limit is known" in light(("off", 0.1)).said

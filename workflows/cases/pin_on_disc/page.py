@@ -20,6 +20,7 @@ from bulkwear.workflows.report.text import range_text
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
 
+ROLLS = False  # pins are held
 RUNS_NOTE = (
     "Overlap: of pin and flat disc as simulated (Hertz); contact radius: of the same. Time step: the stated fraction "
     "of the Rayleigh time. Empty cells of the design leave a setting as it is."
