@@ -58,6 +58,9 @@ def test_how_much_lower_bumps_of_the_tester_are():
     first, second, third = [[float(value) for value in each.groups()] for each in losses]
     assert "have lost up to {:.2f} mm ({:.2f} to {:.2f}), ".format(*first) in page
     assert "{:.2f} ({:.2f} to {:.2f}) and {:.2f} ({:.2f} to {:.2f}) of height;".format(*second, *third) in page
+    hours = rows("circular_tester_results_quick.md", "hours", "quantity").set_index(["hours", "quantity"])["ours"]
+    volume, loss = (float(hours["184", name]) for name in ("convex volume", "largest loss of C11"))
+    assert f"lost {float(f'{volume:.2g}'):.0f} mm³, C11 is {loss:.1f} mm lower." in page
     settings = table("tables/tester_sensitivity_quick_sensitivity.csv").query("quantity.str.startswith('Largest')")
     measured = settings["published"].str.extract(r"published (\S+)\)")[0].astype(float)
     over = settings["value"] / measured
