@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.engine.beds import MEASURES
+from bulkwear.workflows.engine.beds import over_asked_density, read_measures
+from bulkwear.workflows.engine.pouring import bulk_density
 from bulkwear.workflows.report.products import Job, tables
 from bulkwear.workflows.report.sections import Block, Table
 
@@ -14,13 +15,16 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from bulkwear.workflows.config.design import Study
+    from bulkwear.workflows.engine.beds import BedMeasure
 
+ASKED_DENSITY = "asked_density_kg_per_m3"  # what is told of a bed's material
 BEDS = "beds.csv"  # in a study's folder of results
-MILLIMETRES = {"level": 1e3, "depth": 1e3}
+MILLIMETRES = 1e3  # per metre
 NOTE = """
 Asked: the mass of a level bed at the bulk density of the material, and its height. Level: twice the height of the
-centre of mass; on the floor grains lie looser, so that a bed's level is some tenths of a grain high. A bed outside a
-tolerance is refused before any run starts from it.
+centre of mass; on the floor grains lie looser, so that a bed's level is some tenths of a grain high. Bulk density: of
+a level bed of the found mass and level, and over the material's, which is asked. In use: once more on the floor of a
+window, where the bed has fallen a second time. A bed outside a tolerance is refused before any run starts from it.
 """
 
 
@@ -30,11 +34,13 @@ def every_bed(study: Study) -> list[str]:
 
 
 def values_of_beds(study: Study) -> dict[str, dict[str, Any]]:
-    """Return by bed the settings and the packing of the runs that start from it, and its particle scale."""
+    """Return by bed the settings and the packing of the runs that start from it, its scale, its asked bulk density."""
     found: dict[str, dict[str, Any]] = {}
     for run in study.runs:
         bed = study.bed_of(run.name)
-        words = {"packing": study.packing_of[run.row], "particle_scale": study.beds[bed]["particle"]["scale"]}
+        particle = study.beds[bed]["particle"]
+        words = {"packing": study.packing_of[run.row], "particle_scale": particle["scale"]}
+        words |= {ASKED_DENSITY: bulk_density(particle)}
         settings = found.setdefault(bed, {"settings": [], **words})["settings"]
         if study.setting_of[run.row] not in settings:
             settings.append(study.setting_of[run.row])
@@ -48,7 +54,7 @@ def beds(job: Job) -> dict[str, pd.DataFrame]:
 
 
 def beds_table(values: Mapping[str, Mapping[str, Any]], files: Sequence[str | Path]) -> pd.DataFrame:
-    """Return a row per bed: asked, found and tolerance of each measure.
+    """Return a row per bed: asked, found and tolerance of each measure, and the bulk density by mass and level.
 
     values: as from `values_of_beds`; files: as from `every_bed`
     """
@@ -57,13 +63,32 @@ def beds_table(values: Mapping[str, Mapping[str, Any]], files: Sequence[str | Pa
     folders = {Path(file).parent.name: Path(file).parent for file in files}
     rows = []
     for bed, words in values.items():
-        row = {"bed": bed, **words, "settings": ", ".join(words["settings"])}
-        for each in pd.read_csv(folders[bed] / MEASURES).itertuples():
-            unit, factor = ("mm", MILLIMETRES[each.measure]) if each.measure in MILLIMETRES else (each.unit, 1.0)
-            for what in ("asked", "found", "tolerance"):
-                row[f"{each.measure}_{what}_{unit}"] = factor * getattr(each, what)
-        rows.append(row)
+        told = {name: value for name, value in words.items() if name != ASKED_DENSITY}
+        measures = read_measures(folders[bed])
+        row = {"bed": bed, **told, "settings": ", ".join(words["settings"])}
+        rows.append(row | columns_of(measures) | density_columns(measures, words[ASKED_DENSITY]))
     return pd.DataFrame(rows)
+
+
+def columns_of(measures: Iterable[BedMeasure]) -> dict[str, float]:
+    """Return asked, found and tolerance of each measure by columns, lengths in mm."""
+    columns = {}
+    for each in measures:
+        unit, factor = ("mm", MILLIMETRES) if each.unit == "m" else (each.unit, 1.0)
+        for what in ("asked", "found", "tolerance"):
+            columns[f"{each.measure.replace(' ', '_')}_{what}_{unit}"] = factor * getattr(each, what)
+    return columns
+
+
+def density_columns(measures: Iterable[BedMeasure], asked: float) -> dict[str, float]:
+    """Return the bulk density (kg/m3) of a level bed of the mass and level that were found, and its ratio to the one
+    asked for; none of a bed of which either is not known. asked: kg/m3
+    """
+    known = {each.measure: each for each in measures}
+    if not {"mass", "level"} <= set(known):
+        return {}
+    ratio = over_asked_density(known["mass"], known["level"])
+    return {"bulk_density_found_kg_per_m3": ratio * asked, "bulk_density_over_asked": ratio}
 
 
 def blocks_of_beds(folder: Path, note: str = NOTE) -> list[Block]:

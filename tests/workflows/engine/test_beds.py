@@ -6,7 +6,16 @@ import pandas as pd
 import pytest
 
 from bulkwear.workflows.engine import cycles
-from bulkwear.workflows.engine.beds import MEASURES, BedMeasure, bed_fault, level_measure, mass_measure, write_measures
+from bulkwear.workflows.engine.beds import (
+    MEASURES,
+    BedMeasure,
+    bed_fault,
+    level_measure,
+    mass_measure,
+    over_asked_density,
+    read_measures,
+    write_measures,
+)
 from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError
 from tests.support.tiny import tiny_study
 
@@ -39,6 +48,7 @@ def test_measures_are_written(tmp_path):
     write_measures([MASS, LEVEL], tmp_path)
     table = pd.read_csv(tmp_path / MEASURES)
     assert table["missed"].tolist() == [False, True] and table["unit"].tolist() == ["kg", "m"]
+    assert read_measures(tmp_path) == [MASS, LEVEL]
 
 
 GRAIN = {"diameters_m": [0.008, 0.012], "median_diameter_m": 0.01, "density_kg_per_m3": 2500.0}
@@ -58,6 +68,19 @@ def test_depth_is_what_lies_over_something():
     depth = level_measure(GRAIN, 0.15, 0.13, "depth", covering=0.06)
     assert (depth.measure, depth.asked, depth.found) == ("depth", pytest.approx(0.09), pytest.approx(0.07))
     assert depth.missed
+
+
+def test_a_depth_is_held_to_a_part_of_itself():
+    """A bed of 0.5 m may miss its level by 30 mm; a sample 0.05 m deep in it is not covered as asked then."""
+    level, depth = (level_measure(GRAIN, 0.5, 0.52, covering=covering) for covering in (0.0, 0.45))
+    assert (level.tolerance, depth.tolerance) == (pytest.approx(0.03, rel=1e-12), pytest.approx(0.0075, rel=1e-12))
+    assert not level.missed and depth.missed
+
+
+def test_a_level_bed_has_the_density_of_its_mass_and_level():
+    """2 m2 of bed, 0.1 m high at 1500 kg/m3, that are 3 kg too heavy and a fifth too high, are mass over volume."""
+    mass, level = BedMeasure("mass", "kg", 300.0, 303.0, 3.0), BedMeasure("level", "m", 0.1, 0.12, 0.01)
+    assert 1500.0 * over_asked_density(mass, level) == pytest.approx(303.0 / (2.0 * 0.12), rel=1e-12)
 
 
 def test_the_restart_file_of_an_earlier_filling_does_not_count(tmp_path, monkeypatch):

@@ -11,6 +11,7 @@ import pytest
 
 from bulkwear.workflows.engine.beds import MEASURES
 from bulkwear.workflows.report import figure_process
+from bulkwear.workflows.report.beds import ASKED_DENSITY
 from bulkwear.workflows.report.figure_process import VARIABLE
 from tests import REPOSITORY
 
@@ -41,7 +42,7 @@ def project(tmp_path):
 
 def job(project, environment, **changes) -> subprocess.Popen:
     """The script of a job that has the table of beds made."""
-    values = {"bed_1": {"settings": ["A"], "packing": 1, "particle_scale": 1.0}}
+    values = {"bed_1": {"settings": ["A"], "packing": 1, "particle_scale": 1.0, ASKED_DENSITY: 1500.0}}
     product = {
         **{"study": "mine", "case": "sliding_sample", "name": "beds", "files": {"beds": ["bed_1/cost.csv"]}},
         **{"told": {"beds": values}, "remarks": [], "runs": [], "outputs": {"beds": "beds.csv"}},

@@ -17,7 +17,8 @@ NOTE = """
 Asked: the mass of a level bed at the bulk density of the material, and a little more that the consolidator pushes; the
 bed's height, and what of it covers the sample's middle. Found, over the last revolution before the sample comes in:
 twice the height of the centre of mass of the quarter that has just left the consolidator. Over the sample the bed
-heaps up above that. A bed outside a tolerance is refused.
+heaps up above that. Bulk density: of a level bed of the found mass, less what the consolidator pushes, and the found
+level, and over the material's, which is asked. A bed outside a tolerance is refused.
 """
 
 

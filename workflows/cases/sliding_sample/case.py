@@ -13,9 +13,9 @@ from bulkwear.postproc.readers.cycle_folders import FLOW_TABLE, SPIN_TABLE
 from bulkwear.postproc.readers.solver_log import exchanges, thermo_rows, thermo_table
 from bulkwear.postproc.wear.caps import GRAVITY, gap_closing_step
 from bulkwear.workflows.cases.sliding_sample import work as sliding_work
+from bulkwear.workflows.cases.sliding_sample.beds import bed_measures
 from bulkwear.workflows.cases.sliding_sample.checks import SLIDING_CHECKS
 from bulkwear.workflows.cases.sliding_sample.decks import (
-    bed_mass,
     end_wall_corners,
     lowered_bed,
     settled_bed,
@@ -36,7 +36,6 @@ from bulkwear.workflows.config.patterns import (
 )
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine import decks as deck
-from bulkwear.workflows.engine.beds import BedMeasure, level_measure, mass_measure
 from bulkwear.workflows.engine.case import SETUP_BED, SETUP_LOADS, Parameters, Run, register
 from bulkwear.workflows.engine.derived import (
     ADAPTIVE,
@@ -59,6 +58,8 @@ from bulkwear.workflows.engine.worn_pair import LAW_FIGURES
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from bulkwear.workflows.engine.beds import BedMeasure
 
 
 END_WALL = "end_wall.stl"
@@ -208,12 +209,8 @@ class SlidingSample(SampleCase):
         return settled_bed(bed)
 
     def bed_measures(self, bed: Parameters, log: Path) -> list[BedMeasure]:
-        """Return mass and level of a bed that has settled, which is how deep any sample will lie under it."""
-        settled = thermo_table(log)
-        last = int(np.flatnonzero(settled["Step"] <= 1 + settled_bed(bed)["settling_steps"])[-1])
-        mass, level = (float(settled[name][last]) for name in ("bed_mass", "level_h"))
-        particle = bed["particle"]
-        return [mass_measure(particle, bed_mass(bed), mass), level_measure(particle, bed["thickness_m"], level)]
+        """Return mass and level of a bed that has settled, and of a window's bed once more as it is in use."""
+        return bed_measures(bed, thermo_table(log))
 
     def write_shared_files(self, parameters: Parameters, bed: Parameters | None, surface: Path, folder: Path) -> None:
         """Write the wall that closes the bed at both ends, two triangles across the domain at y = 0, if it has ends."""
