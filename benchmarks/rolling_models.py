@@ -39,6 +39,7 @@ from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.bulk_simulations import simulation_folder
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.solver import SolverError
+from bulkwear.workflows.report.fillings import filling_columns
 
 # A slope under the constant torque of `cdt` creeps, the faster the larger the time step (docs/calibration.md).
 SETTINGS = {model: {"rolling_friction": model} for model in MODELS} | {
@@ -115,7 +116,7 @@ def simulated(rows: Sequence[dict[str, Any]], folder: Path, cores: int, alone: b
         answers = side_by_side(
             name, rows, lambda row: is_finished(row, folder), lambda row: answer_of(row["asked"], folder, say), cores
         )
-    told = [_told(row) | {BY: version(row, folder)} for row in rows]
+    told = [_told(row) | filling_of(row, folder) | {BY: version(row, folder)} for row in rows]
     return pd.DataFrame([row | given for row, given in zip(told, answers, strict=True)])
 
 
@@ -137,6 +138,12 @@ def answer_of(test: dict[str, Any], folder: Path, say: Callable[[str], None]) ->
 def version(row: Mapping[str, Any], folder: Path) -> str:
     """Return the version of the code that simulated the packing of a row."""
     return simulated_by(simulation_folder(row["asked"], folder))
+
+
+def filling_of(row: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return what a row's box was filled with, as the table of fillings tells it; nothing of one that never rested."""
+    kept = simulation_folder(row["asked"], folder)
+    return filling_columns(kept) if (state.cycle_folder(kept, 0) / state.STATE).is_file() else {}
 
 
 def restless_file(test: dict[str, Any], folder: Path) -> Path:

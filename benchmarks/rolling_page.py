@@ -10,6 +10,7 @@ import pandas as pd
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, difference, estimate
 from bulkwear.workflows.cases.calibration.responses import response_name
+from bulkwear.workflows.report.fillings import MASS, NOTE, fillings_table
 from bulkwear.workflows.report.markdown import bullet, markdown, prose
 
 MODELS = ("cdt", "epsd2", "own_spin", "rvd")  # of docs/rolling_friction.md
@@ -159,6 +160,7 @@ def results_page(runs: pd.DataFrame, published: pd.DataFrame) -> str:
         ),
         *(beside_the_source(found, restless(runs)) if len(found) else map(bullet, restless(runs))),
         *wall_section(wall_friction(runs)),
+        *filling_section(runs),
     ]
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
 
@@ -184,6 +186,14 @@ def beside_the_source(found: pd.DataFrame, further: Sequence[str]) -> list[str]:
     for response in responses:
         parts += [f"## {response_name(response)}", markdown(by_pair(found, response))]
     return parts
+
+
+def filling_section(runs: pd.DataFrame) -> list[str]:
+    """Return the part of the page on the boxes as they were filled, of those simulations whose filling is told."""
+    if MASS not in runs:
+        return []
+    table = fillings_table(runs.dropna(subset=[MASS]), ("model", "test"))
+    return ["## Fillings", prose(NOTE), markdown(table)]
 
 
 def wall_section(walls: pd.DataFrame) -> list[str]:

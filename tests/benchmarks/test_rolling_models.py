@@ -1,5 +1,6 @@
 """Rolling models beside what the source simulated: what is simulated, differences, the sentence, page and figure."""
 
+import json
 import sys
 
 import numpy as np
@@ -36,6 +37,9 @@ from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.workflows.cases.calibration.boxes import WALL_SHEAR
 from bulkwear.workflows.cases.calibration.case import pairs_file
 from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.bulk_simulations import simulation_folder
+from bulkwear.workflows.engine.bulk_tests import filled_mass
 from bulkwear.workflows.engine.solver import SolverError
 from bulkwear.workflows.engine.state import only_driver
 
@@ -101,6 +105,22 @@ def test_what_is_finished_is_read_beside_who_simulates(tmp_path, monkeypatch):
     rows = wanted(1, ["own_spin"], ["draw_down"], [CALIBRATED])
     with only_driver(tmp_path, print):
         assert simulated(rows, tmp_path, 1, alone=False)["repose_angle_deg"].tolist() == [30.0]
+
+
+def test_what_boxes_were_filled_with_is_told(tmp_path, monkeypatch, published):
+    """By model and test, of simulations that recorded it; a table without is a page without."""
+    monkeypatch.setattr(rolling_models, "answer_of", lambda test, *_: {"repose_angle_deg": 30.0})
+    rows = wanted(2, ["own_spin"], ["draw_down"], [CALIBRATED])
+    for row, higher in zip(rows, (1.1, 1.2), strict=True):
+        folder = state.cycle_folder(simulation_folder(row["asked"], tmp_path), 0)
+        folder.mkdir(parents=True)
+        filling = {"mass": filled_mass(row["asked"]), "level": higher * row["asked"]["box"]["fill_height_m"]}
+        (folder / state.STATE).write_text(json.dumps({"test": row["asked"], "filling": filling}))
+    table = simulated(rows, tmp_path, 1)
+    assert (table["level_found_mm"] / table["level_asked_mm"]).tolist() == pytest.approx([1.1, 1.2])
+    page = results_page(table, published)
+    assert "## Fillings" in page and "| own spin | draw down | " in page
+    assert "## Fillings" not in results_page(table.drop(columns="mass_found_kg"), published)
 
 
 def test_what_was_not_asked_for_stays_in_the_table(tmp_path, monkeypatch):

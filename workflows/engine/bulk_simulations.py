@@ -23,6 +23,7 @@ from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.grains import equal_spheres, solid_share
 from bulkwear.workflows.engine.pouring import particles_of_mass
 from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code
+from bulkwear.workflows.engine.records import read_record
 from bulkwear.workflows.engine.solver import (
     LOG,
     SCREEN,
@@ -106,10 +107,22 @@ def filling_measures(folder: Path, test: Mapping[str, Any]) -> list[BedMeasure]:
     particle, filled = test["particle"], read_snapshot(folder / FILLED)
     volume = solid_share(particle) * math.pi / 6.0 * (2.0 * filled["radius_m"]) ** 3
     level = 2.0 * float((volume * filled["z_m"]).sum() / volume.sum())
-    return [
-        mass_measure(particle, filled_mass(test), particle["density_kg_per_m3"] * float(volume.sum())),
-        level_measure(particle, test["box"]["fill_height_m"], level),
-    ]
+    return _measures_of(test, particle["density_kg_per_m3"] * float(volume.sum()), level)
+
+
+def kept_filling(kept: Path) -> tuple[dict[str, Any], list[BedMeasure]]:
+    """Return the test of a simulation and mass and level of its filled box, from what it recorded of itself.
+
+    kept: its folder, as from `simulation_folder`
+    """
+    record = read_record(state.cycle_folder(kept, 0) / state.STATE)
+    return record["test"], _measures_of(record["test"], *(record["filling"][name] for name in ("mass", "level")))
+
+
+def _measures_of(test: Mapping[str, Any], mass: float, level: float) -> list[BedMeasure]:
+    particle = test["particle"]
+    asked = filled_mass(test), test["box"]["fill_height_m"]
+    return [mass_measure(particle, asked[0], mass), level_measure(particle, asked[1], level)]
 
 
 def _simulating_code(test: Mapping[str, Any]) -> dict[str, Any]:

@@ -28,6 +28,7 @@ from bulkwear.workflows.cases.calibration.responses import (
 from bulkwear.workflows.cases.calibration.simulations import BLOCKED, FOLDERS, cost_table, used_folders
 from bulkwear.workflows.cases.calibration.told import told_sentences
 from bulkwear.workflows.engine.project import current_project
+from bulkwear.workflows.report.fillings import NOTE, fillings_of, fillings_table
 from bulkwear.workflows.report.sections import Block, Cards, Listing, Pictures, Points, Section, Table, Text
 from bulkwear.workflows.report.sensitivity import read_indices, sensitivity_blocks
 
@@ -79,6 +80,7 @@ def sections_of(done: Calibrated, study: str) -> list[Section]:
         *([Section("Pairs in tests that the calibration did not use", checked_pairs(done))] if checked else []),
         Section("The heap of the recommended pair", [Pictures(["heaps"])]),
         Section("Use of the result", use(done.folder, study)),
+        Section("Fillings", [filled(done.folder)]),
         Section("Cost of the simulations", cost(done.folder)),
     ]
 
@@ -320,6 +322,11 @@ def use(folder: Path, study: str) -> list[Block]:
         ),
         Listing("materials.yaml", (folder / "materials.yaml").read_text(encoding="utf-8")),
     ]
+
+
+def filled(folder: Path) -> Block:
+    """Return mass and level of the boxes as they were filled, asked and found."""
+    return Table(fillings_table(fillings_of(used_folders(folder))), "fillings", NOTE)
 
 
 def cost(folder: Path) -> list[Block]:

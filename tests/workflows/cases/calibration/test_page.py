@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.workflows.cases.calibration.answers import in_family
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
+from bulkwear.workflows.cases.calibration.boxes import test_of as bulk_test_of
 from bulkwear.workflows.cases.calibration.findings import (
     DISCHARGE,
     beside_measured,
@@ -25,6 +26,7 @@ from bulkwear.workflows.cases.calibration.findings import (
 from bulkwear.workflows.cases.calibration.page import remarks
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, interval_table
 from bulkwear.workflows.cases.calibration.simulations import FOLDERS
+from bulkwear.workflows.engine.bulk_tests import filled_mass
 from bulkwear.workflows.report import markdown
 from bulkwear.workflows.report.page import write_page
 from bulkwear.workflows.report.page_parameters import page_of, page_parameters, page_templates
@@ -110,7 +112,9 @@ def folder(done, tmp_path_factory):
     shutil.copytree(done.folder, folder)
     pd.DataFrame({"solver_s": [3.0, 4.0], "by": "rates of a test"}).to_csv(folder / "forecast.csv", index=False)
     cost = {"steps": 1000, "solver_s": 2.0, "particles": 30}
-    told = {"test": {"kind": "shear_box"}, "cost": cost, "solver_warnings": {"a small step": 3}}
+    test = bulk_test_of(study().runs[0].parameters, "shear_box", {}, 1)
+    filling = {"mass": 0.995 * filled_mass(test), "level": 1.1 * test["box"]["fill_height_m"]}
+    told = {"test": test, "cost": cost, "filling": filling, "solver_warnings": {"a small step": 3}}
     for name in (done.simulations[FOLDERS][0], "shear_box_of_other_settings"):
         cycle = folder / SIMULATIONS / name / "cycle_000"
         cycle.mkdir(parents=True)
@@ -197,6 +201,16 @@ def test_sections_tell_the_cost_and_its_forecast(folder):
     (table,) = sections(folder)["Cost of the simulations"]
     assert table.data[["test", "simulations", "solver_s"]].to_numpy().tolist() == [["shear box", 1, 2.0]]
     assert "LIGGGHTS took 2 s" in table.note and "estimated: 7 s" in table.note and "rates of a test" in table.note
+
+
+def test_sections_tell_the_filling(folder):
+    """Of the one simulation that counts: 0.995 of the mass of a level box, 1.1 times as high."""
+    (table,) = sections(folder)["Fillings"]
+    (row,) = table.data.to_dict("records")
+    assert row["fillings"] == 1 and "Bulk density" in table.note
+    assert row["largest_mass_found_kg"] == pytest.approx(0.995 * row["mass_asked_kg"], rel=1e-12)
+    assert row["least_level_found_mm"] == pytest.approx(1.1 * row["level_asked_mm"], rel=1e-12)
+    assert row["least_bulk_density_over_asked"] == pytest.approx(0.995 / 1.1, rel=1e-12)
 
 
 def test_the_page_is_that_of_every_study(folder):

@@ -23,11 +23,21 @@ from bulkwear.workflows.cases.calibration.simulations import (
     simulate_all,
 )
 from bulkwear.workflows.engine import state
-from bulkwear.workflows.engine.bulk_simulations import inputs_digest, simulated, simulation_folder
+from bulkwear.workflows.engine.bulk_simulations import (
+    filling_measures,
+    inputs_digest,
+    kept_filling,
+    simulated,
+    simulation_folder,
+)
 from bulkwear.workflows.engine.bulk_tests import rest_energy
 from bulkwear.workflows.engine.solver import SolverError
+from bulkwear.workflows.report.fillings import filling_columns
 from tests.support.bulk_boxes import asked, small
 from tests.support.calibration_study import study
+
+LOOSE = 0.2  # of the level of a box six to ten grains high: floor, end walls and friction hold grains apart; seen 0.15
+EXACT = 1e-12  # relative: the same formula
 
 
 @pytest.fixture(scope="module")
@@ -49,6 +59,32 @@ def test_a_shear_box_stands_at_rest_with_a_slope(done):
     speed = np.sqrt((rows[:, 4:7] ** 2).sum(axis=1))
     heaviest = test["particle"]["density_kg_per_m3"] * math.pi / 6.0 * (2.0 * rows[:, -1].max()) ** 3
     assert 0.5 * heaviest * (speed**2).mean() < 2.0 * rest_energy(test)  # the heaviest stand for all
+
+
+@pytest.mark.solver
+def test_a_shear_box_is_filled_as_asked(done):
+    """Its mass within the tolerance, its level as high as so few grains lie; the record has both."""
+    test = small()
+    kept = simulation_folder(test, done)
+    mass, level = measures = filling_measures(state.cycle_folder(kept, 0), test)
+    assert not mass.missed and 0.0 < level.found / level.asked - 1.0 < LOOSE
+    told, recorded = kept_filling(kept)
+    assert told["seed"] == test["seed"] and recorded == measures
+    box, asked_density = test["box"], 0.59 * 2460.0
+    density = mass.found / (box["length_m"] * box["width_m"] * level.found)
+    columns = filling_columns(kept)
+    assert columns["bulk_density_found_kg_per_m3"] == pytest.approx(density, rel=EXACT)
+    assert columns["bulk_density_over_asked"] == pytest.approx(density / asked_density, rel=EXACT)
+
+
+@pytest.mark.solver
+def test_a_wall_shear_box_is_filled_as_asked(tmp_path):
+    """The box at rest, before its plate is drawn."""
+    test = asked("wall_shear", particle_scale=5.0)
+    size = {"length_m": 0.08, "width_m": 0.054, "fill_height_m": 0.08, "drag_m": 0.002}
+    test = {**test, "box": {**test["box"], **size}}
+    mass, level = filling_measures(simulated(test, tmp_path), test)
+    assert not mass.missed and 0.0 < level.found / level.asked - 1.0 < LOOSE
 
 
 @pytest.mark.solver

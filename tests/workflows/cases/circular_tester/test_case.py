@@ -23,6 +23,8 @@ from tests.support.tiny_tester import ROWS, TINY, tiny_tester
 
 GOLDEN = DATA / "golden_circular_tester.in"
 ROUND_OFF = 1e-9
+# mm, bed height, depth and side of the sample where large particles need more room than those of the study
+ROOM = {8.0: (170, 90, 100), 12.0: (220, 100, 50)}
 TRIANGLES = 0.12  # relative; the estimate of a sample's triangles, its holder included; seen 0.06
 
 
@@ -370,20 +372,21 @@ def test_rows_of_a_design_have_one_seed():
     assert "seed is 20220317, none, allowed is one for all rows" in case.design_fault(rows)
 
 
-@pytest.mark.parametrize("scale", [2.0, 3.0, 4.0, 6.0])
+@pytest.mark.parametrize("scale", [2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 12.0])
 @pytest.mark.parametrize("shape", ["channel", "ring"])
 def test_the_poured_mass_is_that_of_a_level_bed(shape, scale):
     """Whatever shape and particles: bulk density times the trough's volume less the block's; and the room it is poured
     into, off walls and block, holds it at the fraction that can be placed.
     """
-    study = load_study(
-        "circular_tester", overrides={"fidelity": "quick", "particle_scale": scale, "tester": {"shape": shape}}
-    )
+    height, depth, side = ROOM.get(scale, (150, 90, 100))
+    tester = {"shape": shape, "bed_height_mm": height, "consolidator_level_mm": height, "depth_mm": depth}
+    room = {"tester": tester, "sample": {"width_mm": side, "length_mm": side}}
+    study = load_study("circular_tester", overrides={"fidelity": "quick", "particle_scale": scale, **room})
     bed = study.beds["bed_plain"]
     width, middle, turned = 0.21, 0.395, math.radians(66.0) if shape == "channel" else 2.0 * math.pi
-    block = 0.1 * 0.1 * (0.01 + bed["headroom_m"])
+    block = (1e-3 * side) ** 2 * (0.01 + bed["headroom_m"])
     poured, particle = study.case.bed_deck(bed), bed["particle"]
-    level = 0.59 * 2460.0 * (width * middle * turned * 0.15 - block)
+    level = 0.59 * 2460.0 * (width * middle * turned * 1e-3 * height - block)
     assert poured["poured_mass_kg"] == pytest.approx(1.02 * level, rel=ROUND_OFF)
     gap = 0.6 * max(particle["diameters_m"])
     low, high = np.array(poured["block_m"]).reshape(3, 2).T

@@ -22,7 +22,7 @@ from bulkwear.workflows.cases.circular_tester.sensitivity import numbers_of_pair
 from bulkwear.workflows.cases.circular_tester.sensitivity_figures import CLAIMS_PART, TOLD_AS_FINDINGS
 from bulkwear.workflows.config.claims import claims_of
 from bulkwear.workflows.engine import cycles
-from bulkwear.workflows.engine.beds import MASS_TOLERANCE, MEASURES, bed_fault
+from bulkwear.workflows.engine.beds import MASS_TOLERANCE, MEASURES, bed_fault, read_measures
 from bulkwear.workflows.engine.derived import neighbour_skin
 from bulkwear.workflows.engine.job import write_table
 from bulkwear.workflows.engine.state import read_state
@@ -93,6 +93,26 @@ def test_the_bed_is_as_asked(finished):
         f"{name} {number.format(unit)}" for name, unit in (("mass", "kg"), ("level", "m"), ("depth", "m"))
     )
     assert re.fullmatch(f"the bed is not as asked: {words}", fault)
+
+
+@pytest.mark.parametrize("shape", ["channel", "ring"])
+def test_a_bed_of_larger_particles_is_as_asked(shape, tmp_path):
+    """A ring's bed as well as a channel's, at scale 6 in a narrow trough, has its mass, level and depth."""
+    trough = {"inner_radius_mm": 30, "outer_radius_mm": 126, "channel_deg": 115, "depth_mm": 50}
+    level = {"bed_height_mm": 104, "consolidator_level_mm": 104}
+    study = tiny_tester(
+        rows=["plain"],
+        particle_scale=6,
+        sample={"width_mm": 17, "length_mm": 17},
+        tester={"shape": shape, **trough, **level},
+        solver=LONG_STEPS,
+    )
+    ((name, bed),) = study.beds.items()
+    cycles.fill_bed(study.case, name, bed, tmp_path)
+    measures = read_measures(tmp_path)
+    assert [each.measure for each in measures] == ["mass", "level", "depth"] and bed_fault(measures) is None
+    raised = bed | {"depth_m": bed["depth_m"] + 0.02, "bed_height_m": bed["bed_height_m"] + 0.02}
+    assert all(each.missed for each in study.case.bed_measures(raised, tmp_path / "log.liggghts"))
 
 
 @pytest.mark.verify

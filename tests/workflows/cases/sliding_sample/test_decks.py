@@ -8,7 +8,7 @@ from bulkwear.workflows.cases.sliding_sample.decks import bed_mass, lowered_bed,
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.sources import list_studies, read_sources
 from bulkwear.workflows.engine import decks as deck
-from bulkwear.workflows.engine.beds import bed_fault
+from bulkwear.workflows.engine.beds import bed_fault, read_measures
 from bulkwear.workflows.engine.cycles import fill_bed
 from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.engine.schedule import known_spans
@@ -232,17 +232,24 @@ def test_the_poured_mass_is_that_of_a_level_bed(ends, scale):
 
 
 @pytest.mark.solver
-@pytest.mark.parametrize("ends", ["walls", "periodic"])
-def test_a_settled_bed_has_its_mass_and_level(tmp_path, ends):
-    """The solver's bed is within its tolerances; asked for half the thickness, it is refused with both numbers."""
-    study = tiny_study(bed={"ends": ends, "ahead_mm": 80})
-    bed = study.beds["bed_R5"]
-    fill_bed(study.case, "bed_R5", bed, tmp_path)
-    mass, level = study.case.bed_measures(bed, tmp_path / "log.liggghts")
-    assert not mass.missed and not level.missed
-    assert 0.0 < level.found - level.asked < 0.5 * bed["particle"]["median_diameter_m"]
-    halved = study.case.bed_measures({**bed, "thickness_m": 0.5 * bed["thickness_m"]}, tmp_path / "log.liggghts")
-    assert [each.missed for each in halved] == [True, True]
+@pytest.mark.parametrize(("ends", "scale"), [("walls", 4), ("walls", 8), ("periodic", 4), ("window", 4), ("window", 8)])
+def test_a_settled_bed_has_its_mass_and_level(tmp_path, ends, scale):
+    """The solver's bed is within its tolerances; asked for half the thickness, it is refused with its numbers. That of
+    a window is measured again where it has fallen a second time, which packs it denser.
+    """
+    room = {"ends": ends, "ahead_mm": 80, "behind_mm": 80, "allow_thin_bed": True, "exchange_mm": 60}
+    study, log = tiny_study(particle_scale=scale, bed=room), tmp_path / LOG
+    ((name, bed),) = study.beds.items()
+    fill_bed(study.case, name, bed, tmp_path)
+    measures = study.case.bed_measures(bed, log)
+    names = [each.measure for each in measures]
+    assert names == ["mass", "level", *(["mass in use", "level in use"] if ends == "window" else [])]
+    assert bed_fault(measures) is None and [each.measure for each in read_measures(tmp_path)] == names
+    levels = [each.found - each.asked for each in measures if each.unit == "m"]
+    assert 0.5 * bed["particle"]["median_diameter_m"] > levels[0] >= levels[-1] > 0.0
+    assert (len(levels) == 2) == (levels[0] > levels[-1])
+    halved = study.case.bed_measures({**bed, "thickness_m": 0.5 * bed["thickness_m"]}, log)
+    assert all(each.missed for each in halved)
     assert "mass" in bed_fault(halved) and "level" in bed_fault(halved)
 
 
