@@ -2,9 +2,24 @@
 
 import re
 
+import yaml
+
+from bulkwear.workflows.engine.beds import (
+    DENSITY_TOLERANCE,
+    LEVEL_TOLERANCE,
+    MASS_TOLERANCE,
+    ROUNDED_PARTICLES,
+    BedMeasure,
+    level_measure,
+    over_asked_density,
+)
 from bulkwear.workflows.report.time_step import SHOWN
+from tests import REPOSITORY
 from tests.support.told import rows, table, told
 
+GRAVEL = yaml.safe_load((REPOSITORY / "config/materials.yaml").read_text(encoding="utf-8"))["particles"]["river_gravel"]
+MEDIAN = 1e-3 * GRAVEL["median_diameter_mm"]  # m
+UNITS = {"mass": "kg", "level": "mm"}  # of measures in tables of beds
 SHORTEST, CHOSEN = "0.1", "0.4"  # time steps over the Rayleigh time
 
 
@@ -25,6 +40,42 @@ def test_what_a_sphere_of_a_clump_costs():
     bed, runs = over.loc["bed"].iloc[0], over.loc["run"].to_numpy()
     words = f"costs {bed['tetrahedron']:.1f} (four in a clump) and {bed['pair']:.1f} times (two) that of a single one"
     assert f"{words}, in runs {runs.min():.1f} to {runs.max():.1f} times" in told("grain_shape.md")
+
+
+def test_by_how_much_a_bed_may_miss_what_is_asked():
+    """The tolerances as numbers, and what they are of the tester's depth and of the beds of the series of sizes."""
+    page, sizes = told("decisions.md"), table("tables/particle_size_quick_beds.csv")
+    assert f"Its mass by {100.0 * MASS_TOLERANCE:.0f} %, or by two of the largest grains." in page
+    assert LEVEL_TOLERANCE == 0.5 and ROUNDED_PARTICLES == 2.0
+    assert f"and by {100.0 * DENSITY_TOLERANCE:.0f} % of the level or depth" in page
+    grain = MEDIAN * sizes["particle_scale"]
+    tester = level_measure({"median_diameter_m": 6.0 * MEDIAN}, 0.15, 0.15, "depth", covering=0.06)
+    assert f"at scale 6 the tester's 90 mm of depth by {1e3 * tester.tolerance:.1f} mm" in page
+    coarse = [
+        1e3 * level_measure({"median_diameter_m": scale * MEDIAN}, 0.046, 0.046).tolerance for scale in (4.0, 12.0)
+    ]
+    half = 1e3 * LEVEL_TOLERANCE * 12.0 * MEDIAN
+    words = "a bed of 46 mm by {:.1f} mm at scale 4 and by {:.1f} mm at 12, of which {:.1f} are half a grain"
+    assert words.format(*coarse, half) in page
+    off = (1e-3 * (sizes["level_found_mm"] - sizes["level_asked_mm"])).abs()
+    assert (off <= LEVEL_TOLERANCE * grain + DENSITY_TOLERANCE * 1e-3 * sizes["level_asked_mm"]).all()
+
+
+def test_how_loose_coarse_beds_lie():
+    """Bulk density by mass and level over the asked one, at three scales, and how many grains the level is too high."""
+    beds, page = table("tables/particle_size_quick_beds.csv"), told("particle_size.md")
+    columns = [[f"{name}_{what}_{unit}" for what in ("asked", "found")] for name, unit in UNITS.items()]
+    beds["ratio"] = [
+        over_asked_density(*(BedMeasure(name, "", *row[own], 0.0) for name, own in zip(UNITS, columns, strict=True)))
+        for _, row in beds.iterrows()
+    ]
+    ratio = beds.groupby("particle_scale")["ratio"].mean()
+    assert ratio.is_monotonic_decreasing
+    asked = GRAVEL["density_kg_per_m3"] * GRAVEL["bulk_solid_fraction"]
+    words = f"{ratio[4]:.2f} of the bulk density that is asked ({asked:.0f} kg/m³) at scale 4, {ratio[8]:.2f} at 8"
+    assert f"{words} and {ratio[12]:.2f} at 12" in page
+    high = 1e-3 * (beds["level_found_mm"] - beds["level_asked_mm"]) / (MEDIAN * beds["particle_scale"])
+    assert f"the level is {high.min():.2f} to {high.max():.2f} of a median grain too high" in page
 
 
 def test_how_a_bump_is_worn_through():
