@@ -34,6 +34,7 @@ WEAR = {"wear": every_run("wear.csv")}  # with the surfaces of the cycles beside
 FOREIGN = {"foreign": unlike_source}  # surfaces beside which no published number stands
 ALL_RUNS, PAIRS = {"runs": values_of_runs}, {"runs": values_of_pairs}
 DIGITS = 9
+BEDS_IN_USE = "tester/beds_in_use.csv"
 OF_PAIRS = {"when": has_pairs, "digits": DIGITS}
 TABLES = {
     name: f"tester/{name}.csv"
@@ -74,6 +75,16 @@ def tester_runs(job: Job) -> dict[str, pd.DataFrame]:
 
     claims = claims_of("circular_tester", job.files.claims)
     return tables_of_runs(runs_of(job), *read(job, "published", "published_fits"), claims, job.told.foreign)
+
+
+@tables(inputs=WEAR, told=ALL_RUNS, tables={"beds_in_use": BEDS_IN_USE}, digits=DIGITS)
+def beds_in_use(job: Job) -> dict[str, pd.DataFrame]:
+    """Make the table of the beds once more, with the samples in them."""
+    import pandas as pd
+
+    from bulkwear.workflows.cases.circular_tester.flow import bed_in_use
+
+    return {"beds_in_use": pd.DataFrame([bed_in_use(run) for run in runs_of(job)])}
 
 
 # ---------------------------------------------------------------- volumes

@@ -18,6 +18,7 @@ from bulkwear.workflows.cases.circular_tester.packings import PACKING, over_pack
 from bulkwear.workflows.cases.circular_tester.runs import LOG, TesterRun
 
 STEADINESS = ("velocity_m_per_s", "bed_height_m", "wear_rate_m3_per_s")  # the three criteria of Fig 6.7
+MILLIMETRES = 1e3  # per metre
 WHOLE = 1e-6  # revolutions that an instant may lie before a whole one and belong to the next
 FEWEST_INSTANTS = 3  # in a revolution, for a standard deviation that says anything
 OF_RUN = ["run", "surface", PACKING]
@@ -105,6 +106,16 @@ def series_of(run: TesterRun) -> pd.DataFrame:
     table.insert(1, "surface", run.surface)
     table.insert(2, PACKING, run.packing)
     return table.assign(worn_revolution=table["revolution"] - run.before)
+
+
+def bed_in_use(run: TesterRun) -> dict[str, str | float]:
+    """Return run, bed, and mass and level of the bed past the consolidator (kg, mm) with the sample in it: over the
+    run-in, before wear is counted.
+    """
+    thermo = thermo_rows(cycle_folders(run.folder)[0] / LOG)
+    level = MILLIMETRES * float(thermo["level_h"].mean())
+    words = {"run": run.name, "bed": run.bed_folder.name}
+    return words | {"mass_in_use_kg": float(thermo["bed_mass"][-1]), "level_in_use_mm": level}
 
 
 def lowest_layer(folder: Path) -> pd.DataFrame:

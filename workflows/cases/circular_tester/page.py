@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester import key_numbers
 from bulkwear.workflows.cases.circular_tester.beds import NOTE
+from bulkwear.workflows.cases.circular_tester.figures import BEDS_IN_USE
 from bulkwear.workflows.cases.circular_tester.runs import has_pairs
 from bulkwear.workflows.cases.circular_tester.sensitivity_figures import EFFECTS, NUMBERS, SENSITIVITY, SETTINGS_SAID
 from bulkwear.workflows.cases.circular_tester.source import material_coefficient, unlike_source
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 RUNS_NOTE = (
     "Layers: over the sample, its depth over the median diameter of the (scaled) particles, and under it. Particles: "
     "estimate from the trough's volume; the solver's number is under Cost. Pressure: of a bed at rest of that depth."
+)
+IN_USE_NOTE = (
+    "In use: mass, and mean level past the consolidator, while the sample that took the block's place is run in."
 )
 SENSITIVITY_NOTE = (
     "Over: value over the nearest one that agrees, 1 where it does itself. Reached: whether the value agrees; of one "
@@ -61,6 +65,13 @@ def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
     return all_answers(folder, study["figures"], told["foreign"]) if told["paired"] else [UNPAIRED]
 
 
+def beds(folder: Path) -> list[Block]:
+    """Return the beds of a study, asked and found, and as the samples have them."""
+    import pandas as pd
+
+    return [*blocks_of_beds(folder, NOTE), Table(pd.read_csv(folder / BEDS_IN_USE), "beds_in_use", IN_USE_NOTE)]
+
+
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """Return the sections of a study's page: the answer beside the experiment first, then how the runs come to it.
 
@@ -68,7 +79,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """
     if not study["told"]["paired"]:
         runs = [Text(UNPAIRED), *key_numbers.every_run(folder), Pictures(("worn_surface", "worn_surface_3d"))]
-        return [Section("Every run", runs), Section("Beds", blocks_of_beds(folder, NOTE))]
+        return [Section("Every run", runs), Section("Beds", beds(folder))]
     columns = ("tester_columns", "tester_bumps", "tester_contours", "tester_force_columns")
     places = (*columns, "wear_by_law", "maps_by_law")
     layer = ("tester_spin", "tester_velocity", "tester_force", "tester_spin_map", "tester_velocity_map")
@@ -83,7 +94,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
         ("Volume by revolution", key_numbers.rates(study, folder), ("tester_volume", "tester_increments")),
         ("Patterned over plain at equal distance", key_numbers.ratios(folder), ("tester_ring",)),
         ("Every run", key_numbers.every_run(folder), ("worn_surface", "worn_surface_3d")),
-        ("Beds", blocks_of_beds(folder, NOTE), ()),
+        ("Beds", beds(folder), ()),
         ("Steadiness", key_numbers.steadiness(folder), ("tester_steadiness",)),
         ("Where it wears", key_numbers.by_column(folder), places),
         (

@@ -203,7 +203,9 @@ def test_snapshots_become_a_table_of_the_lowest_layer(finished):
 @pytest.fixture(scope="module")
 def tables(finished):
     """The tables of the study by name."""
-    make_products(finished.study, finished.root, ["tester_runs", "tester_numbers", "beds"], REMARKS, AS_SOURCE)
+    make_products(
+        finished.study, finished.root, ["tester_runs", "tester_numbers", "beds", "beds_in_use"], REMARKS, AS_SOURCE
+    )
     written = [*(finished.folder / "tester").glob("*.csv"), finished.folder / BEDS]
     return {path.stem: pd.read_csv(path) for path in written}
 
@@ -235,6 +237,10 @@ def test_tables_are_made_of_the_runs(finished, tables):
         assert of_run["volume_m3"].iloc[0] == 0.0
     (bed,) = tables["beds"].to_dict("records")
     assert bed["bed"] == "bed_plain" and abs(bed["level_found_mm"] - 72.0) <= bed["level_tolerance_mm"] < 10.0
+    used = tables["beds_in_use"].set_index("run")
+    assert set(used.index) == set(ROWS) and set(used["bed"]) == {"bed_plain"}
+    assert used["mass_in_use_kg"].tolist() == pytest.approx([bed["mass_found_kg"]] * 2, rel=1e-3)  # by the log's digits
+    assert (used["level_in_use_mm"] - bed["level_found_mm"]).abs().max() < 0.5 * bed["level_tolerance_mm"]
     compared = tables["comparison"]
     plain = compared[(compared["hours"] == 56) & (compared["quantity"] == "plain volume")]
     assert np.isnan(plain["ours"].iloc[0]) and "more than 2 times" in plain["note"].iloc[0]  # it is 5000 revolutions

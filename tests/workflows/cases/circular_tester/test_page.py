@@ -18,7 +18,7 @@ def test_tables_of_an_earlier_choice_of_rows_are_not_shown(tmp_path, monkeypatch
     """What rows of other series have left stays in the folder, and has no place on the page."""
     for name in ("beside_the_experiment", "findings", "rates", "ratios", "every_run", "steadiness", "by_column"):
         monkeypatch.setattr(key_numbers, name, lambda *_: [])
-    for name in ("published_numbers", "blocks_of_beds"):
+    for name in ("published_numbers", "beds"):
         monkeypatch.setattr(page, name, lambda *_: [])
     for name in ("figures/tester_worn_out.csv", "figures/tester_mesh.csv", page.SENSITIVITY):
         (tmp_path / name).parent.mkdir(exist_ok=True)
