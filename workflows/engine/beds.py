@@ -14,7 +14,7 @@ MEASURES = "measures.csv"  # in a bed's folder
 MASS_TOLERANCE = 0.01  # -, of what is asked
 ROUNDED_PARTICLES = 2.0  # -, largest particles: the number of each size is rounded, which shows in small beds
 # No centre lies lower than half a grain over a floor, or higher than half a grain under the surface. Packed like the
-# bulk between, a bed were a grain too high; its first and last layers are denser, which takes half of that or more.
+# bulk between, a bed would be a grain too high; its first and last layers are denser, which takes half of that or more.
 LEVEL_TOLERANCE = 0.5  # -, in median diameters; seen 0.12 to 0.39 in beds of one to five layers of spheres
 # Spheres poured at random fill 0.56 (loose) to 0.64 (close) of their room: from 5 % under the 0.59 of gravel's bulk.
 DENSITY_TOLERANCE = 0.05  # -, of the level or depth asked for; seen 1.4 % looser than with half a grain, 2.3 % denser
