@@ -290,7 +290,7 @@ def test_what_machines_pages_say_of_sliding_contacts_and_of_a_patterned_liner():
     )
     page = told("rolling_friction.md")
     assert "lasts {:.1f} times as long as the plain one under `own_spin` ({:.1f} to {:.1f})".format(*quick) in page
-    assert "older code, {:.1f} times ({:.1f} to {:.1f})".format(*standard) in page
+    assert "at quick, {:.1f} ({:.1f} to {:.1f}) at [standard]".format(*standard) in page
 
 
 def test_the_time_steps_that_pages_call_shown_are_those_of_the_table():
