@@ -24,6 +24,16 @@ PAIRS, APART = 20, 0.05  # -, m
 SHORT, LONG = 1e-10, 5e-6  # s: within one short step nothing moves; a long one stops spins within hundreds
 TORQUE = 1e-5  # relative: the solver's normal at a wall is not quite of length 1
 STOPPED, GROWTH = 1e-9, 1e-12  # rad/s, and relative: rounding
+FAST, STRETCHED = (
+    1e6,
+    10,
+)  # rad/s, which hardly changes within as many steps, that stretch a rolling spring to its limit
+AT_45_DEGREES = {  # torque over mu_r F_n and the radius, and whether that is full between particles
+    "cdt": (np.sqrt(0.5), False),
+    "epsd2": (1.0, False),
+    "own_spin": (1.0, True),
+    "rvd": (1.0, False),
+}
 BLOCK = 3  # -, spheres along each side of a cube
 GRAVITY = 9.81  # m/s2
 ACCELERATION = 0.01  # relative: the lever of the contact is shorter than the radius by half of the overlap
@@ -147,6 +157,27 @@ def test_torques_at_walls(model, wall, tmp_path):
     force = np.linalg.norm(found["force"][1], axis=1)
     meant = -COEFFICIENT * (force * radii)[:, None] * unit(against)
     np.testing.assert_allclose(found["torque"][1], meant, atol=TORQUE * np.abs(meant).max())
+
+
+@pytest.mark.parametrize("wall", [None, *WALLS])
+@pytest.mark.parametrize("model", AT_45_DEGREES)
+def test_a_spin_at_45_degrees_to_the_normal(model, wall, tmp_path):
+    """The last column of the table in docs/rolling_friction.md, of a pair and at walls; the spring of epsd2 reaches its
+    limit within a few steps.
+    """
+    share, is_full = AT_45_DEGREES[model]
+    spins = FAST * np.sqrt(0.5) * np.array([[0.0, 1.0, 1.0], [0.0, 0.0, 0.0]])
+    first = RADII[0] - OVERLAP
+    centres, count = [[0.0, 0.1, first], [0.0, 0.1, first + sum(RADII) - OVERLAP]], 1 if wall else 2
+    reduced = RADII[0] if wall else RADII[0] * RADII[1] / sum(RADII)
+    force = 4.0 / 3.0 * 0.5 * 1e7 / (1.0 - 0.3**2) * np.sqrt(reduced) * OVERLAP**1.5  # N, Hertz
+    head = HEAD.format(model=model, step=LONG, friction=0.0, ranks=1)
+    head += placed(centres[:count], RADII[:count], spins[:count])
+    held = "fix motion all nve/sphere\nfix hold all setforce 0.0 0.0 0.0\n"
+    walls = WALLS[wall].format(model=model) if wall else ""
+    found = simulated(tmp_path, head + walls + held + f"{DUMP.format(every=STRETCHED)}run {STRETCHED}\n")
+    meant = share * COEFFICIENT * force * (RADII[0] if is_full else reduced)
+    assert np.linalg.norm(found["torque"][-1, 0]) == pytest.approx(meant, rel=TORQUE)
 
 
 @pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
