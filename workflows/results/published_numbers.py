@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,16 @@ from bulkwear.workflows.config.claims import ABOUT, date_of_rules
 from bulkwear.workflows.config.layers import ConfigError, read_yaml
 from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.report.markdown import markdown
-from bulkwear.workflows.report.provenance_of_pages import Origin
+from bulkwear.workflows.report.provenance_of_pages import LINE, Origin
 from bulkwear.workflows.report.published import FOLDER, GIVEN, published_file
+from bulkwear.workflows.results.not_compared import (
+    CHAPTERS,
+    COLUMNS,
+    NUMBERS,
+    chapter_of,
+    not_compared,
+    read_not_compared,
+)
 
 PAGE = "published_numbers.md"
 DIFFERENCES = "config/published/differences.yaml"
@@ -32,6 +41,12 @@ that others simulated, a calibration tells what its surrogate predicts there. On
 nothing. Given: put in by us, no result. Reasons of differences that pages do not give themselves:
 config/published/differences.yaml; a candidate is not measured.
 """
+LEFT = "Published, not compared"
+ANCHOR = "published-not-compared"
+LEFT_NOTE = """Published numbers that stand beside none of ours, with the reason, from
+config/published/not_compared.yaml. Given as input: put in by us, so that it is no result.
+"""
+PUT_IN = "given as input"  # begins a reason
 NONE = "No page of results has left such a table yet.\n"
 
 
@@ -41,20 +56,51 @@ def write_published(docs: Path, origins: Sequence[Origin]) -> None:
 
 
 def published_page(docs: Path, origins: Sequence[Origin]) -> str:
-    """Return the page: counts of verdicts by page, then a section with the numbers of each page."""
+    """Return the page: counts of verdicts by page, the numbers of each page by chapter, and what is not compared."""
     there = [each.page for each in origins if (docs / published_file(each.page)).is_file()]
     known = known_differences()
     tables = {page: with_causes(page, read_published(docs / published_file(page)), known) for page in there}
     head = HEAD.format(folder=FOLDER, date=date_of_rules(), about=100.0 * ABOUT)
     if not tables:
         return f"{head}\n{NONE}"
+    of_chapters = {page: _chapter(table) for page, table in tables.items()}
+    tables = {page: tables[page] for chapter in CHAPTERS for page in tables if of_chapters[page] == chapter}
+    left = not_compared([finding for table in tables.values() for finding in table["finding"]], read_not_compared())
     counts = pd.DataFrame(
         [{"page": f"[{page}]({page})", "numbers": len(table), **_counts(table)} for page, table in tables.items()]
     )
-    parts = [head, markdown(counts)]
-    for page, table in tables.items():
-        parts.append(f"## {Path(page).stem.replace('_', ' ')}\n\n[Page]({page})\n\n{markdown(table)}")
-    return "\n".join(parts)
+    parts = [head, markdown(counts), f"{_counted(left)}\n"]
+    for chapter, title in CHAPTERS.items():
+        pages = [page for page in tables if of_chapters[page] == chapter]
+        parts += [f"## {title}\n"] if pages else []
+        for page in pages:
+            name = Path(page).stem.replace("_", " ")
+            parts.append(f"### {name}\n\n[Page]({page})\n\n{markdown(tables[page])}")
+    return "\n".join([*parts, *_left_over(left)])
+
+
+def _chapter(table: pd.DataFrame) -> int | None:
+    """Return the chapter of the source that most numbers of a page are of."""
+    chapters = [chapter_of(source) for source in table["source"]]
+    return max(CHAPTERS, key=chapters.count)
+
+
+def _counted(left: pd.DataFrame) -> str:
+    """Return how many published numbers are not compared, by chapter."""
+    counts = left.groupby("chapter", dropna=False)[NUMBERS].sum()
+    said = [f"{count} of {'machines' if of != of else f'chapter {of:.0f}'}" for of, count in counts.items()]
+    given = left.loc[left["reason"].str.startswith(PUT_IN), NUMBERS].sum()
+    further = f"Further {left[NUMBERS].sum()} published numbers are [not compared](#{ANCHOR})"
+    return textwrap.fill(f"{further}: {', '.join(said)}; {given} of them are put in by us.", LINE)
+
+
+def _left_over(left: pd.DataFrame) -> list[str]:
+    """Return the section of what is not compared: a table for each chapter."""
+    parts = [f"## {LEFT}\n\n{LEFT_NOTE}"]
+    for chapter, title in CHAPTERS.items():
+        table = left[left["chapter"].isna() if chapter is None else left["chapter"] == chapter]
+        parts += [f"### {title}, not compared\n\n{markdown(table[COLUMNS])}"] if len(table) else []
+    return parts
 
 
 def read_published(path: Path) -> pd.DataFrame:

@@ -20,6 +20,7 @@ from bulkwear.workflows.report.published import (
 )
 from bulkwear.workflows.report.sections import Section, Table, Text
 from bulkwear.workflows.report.text import number
+from bulkwear.workflows.results.not_compared import CHAPTERS, not_compared, read_not_compared
 from bulkwear.workflows.results.published_numbers import (
     PAGE,
     UNKNOWN_CAUSE,
@@ -188,6 +189,31 @@ def test_the_page_has_the_numbers_of_every_page_that_left_some(tmp_path):
     none = number(math.nan)
     assert f"| critical scale, convex | about 4 at scale 4 | 0.9 (0.8 to 1.0) | {none} | agrees |  | Yan 2022 |" in page
     assert "b results" not in page
+
+
+def test_pages_stand_by_chapter_and_what_is_not_compared_stands_behind(tmp_path):
+    """Chapters in their order, machines last; numbers that are not compared are counted at the top."""
+    origins = [Origin(f"{name}_results_quick.md", "equipment") for name in ("mill", "tester", "pin")]
+    for origin, source in zip(origins, ("Kalala 2008", "Yan 2022, Eq 6.2", "Yan 2022, Table 5.4"), strict=True):
+        write_published_numbers(tmp_path, origin.page, [section(CLAIM | {"source": source})])
+    page = published_page(tmp_path, origins)
+    heads = [line for line in page.splitlines() if line.startswith("#")]
+    assert heads[1:7] == [
+        "## Chapter 5: pin on disc",
+        "### pin results quick",
+        "## Chapter 6: circular wear tester",
+        "### tester results quick",
+        "## Machines",
+        "### mill results quick",
+    ]
+    assert heads[7:] == ["## Published, not compared"] + [
+        f"### {title}, not compared" for chapter, title in CHAPTERS.items() if chapter
+    ]
+    overview = page[: page.index("## ")]
+    assert overview.index("(pin_results") < overview.index("(tester_results") < overview.index("(mill_results")
+    left = not_compared(["It is so"] * 3, read_not_compared())
+    assert f"Further {left['numbers'].sum()} published numbers are [not compared](#published-not-compared)" in overview
+    assert f"{left.loc[left['chapter'] == 4, 'numbers'].sum()} of chapter 4" in overview
 
 
 def test_a_page_without_published_numbers_leaves_none_of_an_earlier_one(tmp_path):
