@@ -1,5 +1,5 @@
-"""The list of all pages of results with where they come from, the warnings that stand on the pages themselves, their
-gallery, and the page of all published numbers.
+"""The list of all pages of results with where they come from and what they ran, the warnings that stand on the pages
+themselves, their gallery, and the page of all published numbers.
 """
 
 from __future__ import annotations
@@ -18,7 +18,9 @@ from bulkwear.workflows.report.provenance_of_pages import (
 )
 from bulkwear.workflows.report.spot_checks import SpotCheck, passed, read_checks
 from bulkwear.workflows.results.gallery import GALLERY, gallery
+from bulkwear.workflows.results.not_run import not_run_section
 from bulkwear.workflows.results.published_numbers import write_published
+from bulkwear.workflows.results.ran import ran_section
 
 INDEX = "results.md"
 HEAD = """# Where every result comes from
@@ -50,9 +52,16 @@ def mark(docs: Path, changes: Sequence[Change]) -> None:
         path = docs / origin.page
         if path.suffix == ".md" and path.is_file():
             path.write_text(with_banner(path.read_text(encoding="utf-8"), sentences(origin)), encoding="utf-8")
-    (docs / INDEX).write_text(index_page(origins, sentences, changes, checks), encoding="utf-8")
+    index = index_page(origins, sentences, changes, checks) + of_studies(origins)
+    (docs / INDEX).write_text(index, encoding="utf-8")
     (docs / GALLERY).write_text(gallery(docs, origins), encoding="utf-8")
     write_published(docs, origins)
+
+
+def of_studies(origins: Sequence[Origin]) -> str:
+    """Return what pages of studies ran, and what was not run; nothing where no page is of a study."""
+    ran = ran_section(origins)
+    return f"{ran}{not_run_section()}" if ran else ""
 
 
 def index_page(

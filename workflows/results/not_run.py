@@ -1,0 +1,78 @@
+"""What nobody has run so far of the source's own conditions, with the command that forecasts it and what it costs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine.project import PACKAGE
+from bulkwear.workflows.forecast.forecast import forecast_table, work_of
+from bulkwear.workflows.forecast.rates import DEFAULT, read_rates
+from bulkwear.workflows.forecast.shipped import CORES, cost
+from bulkwear.workflows.report.markdown import config_words, markdown
+
+
+@dataclass(frozen=True)
+class NotRun:
+    """A study as it was not run: in words, and the settings besides those of the configuration."""
+
+    what: str
+    study: str
+    settings: Mapping[str, Any]
+
+
+WINDOW = {"ends": "window", "ahead_mm": 150, "behind_mm": 200}
+NOT_RUN = (
+    NotRun(
+        "screening: all thirteen rows at standard, over the source's travel",
+        "screening",
+        {"fidelity": "standard", "sliding": {"run_in_mm": 1000, "travel_mm": 700}},
+    ),
+    NotRun(
+        "screening: two rows at the source's own particle size, in a window instead of its bed of 2 m",
+        "screening",
+        {"fidelity": "paper", "packings": 1, "rows": ["R5", "R12"], "bed": WINDOW},
+    ),
+    NotRun(
+        "calibration: the draw-down test with the source's square opening; all results are of a slot",
+        "calibration",
+        {
+            "fidelity": "standard",
+            "calibration": {"tests": ["draw_down"]},
+            "draw_down": {"width_mm": 100, "opening": "square", "front_and_back": "walls"},
+        },
+    ),
+    NotRun(
+        "circular tester: ring, and particle scales below 6, by the present code",
+        "circular_tester",
+        {"fidelity": "standard"},
+    ),
+)
+HEAD = f"""
+## What was not run
+
+Wall time on {CORES} cores, by the default rates; the command prints them job by job, and without
+`_forecast` runs the study. Whole studies at each fidelity: [forecasts](forecast_studies.md).
+
+"""
+PIN = """
+The pin has not been run with the source's 14 µs undivided where its displacement rule makes more than 22 contacts at
+once: no setting leaves the step as it is, since from 40 contacts on the pin swings by itself ([why](pin_on_disc.md)).
+Nor is there a row of that rule at 6.8e-11 1/Pa, the coefficient that gives the laboratory's volume here.
+"""
+
+
+def not_run_section(asked: Iterable[NotRun] = NOT_RUN) -> str:
+    """Return the section of what was not run. Raises ConfigError where a study does not take its settings."""
+    rates = read_rates(PACKAGE / DEFAULT).rates
+    rows = []
+    for each in asked:
+        study = load_study(each.study, overrides=dict(each.settings))
+        command = f"`snakemake {each.study}_forecast{config_words(each.settings)}`"
+        hours = cost(forecast_table(work_of(study.foreseen), rates))
+        rows.append({"what": each.what, "core hours; wall time": hours, "forecast": command})
+    return f"{HEAD}{markdown(pd.DataFrame(rows))}{PIN}"
