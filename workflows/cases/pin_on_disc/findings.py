@@ -9,6 +9,11 @@ import pandas as pd
 
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
 from bulkwear.postproc.tables.summary import published_value
+from bulkwear.workflows.cases.pin_on_disc.beside_source import (
+    coefficients_beside_source,
+    differences_beside_source,
+    sizes_beside_source,
+)
 from bulkwear.workflows.cases.pin_on_disc.coefficient import coefficient_of_laboratory
 from bulkwear.workflows.cases.pin_on_disc.comparison import EDGES_PER_WIDTH, STABLE_PERCENT
 from bulkwear.workflows.cases.pin_on_disc.run_in import TESTED, rate_of_no_run_in, run_in_table, run_in_words
@@ -70,7 +75,9 @@ def table_of(folder: Path, figure: str) -> pd.DataFrame:
 
 def comparison_blocks(folder: Path) -> list[Block]:
     """Return laboratory, thesis and ours with their differences in per cent."""
-    return [Table(table_of(folder, "pin_comparison").drop(columns="run"), "comparison", heads=VOLUME_HEADS)]
+    compared = table_of(folder, "pin_comparison")
+    beside = sizes_beside_source(compared, published_values())
+    return [Table(compared.drop(columns="run"), "comparison", heads=VOLUME_HEADS, beside_source=beside)]
 
 
 def excess_blocks(folder: Path) -> list[Block]:
@@ -153,10 +160,12 @@ def published_growth(fits: pd.DataFrame) -> pd.DataFrame:
 
 def size_blocks(folder: Path) -> list[Block]:
     """Return simulated over theoretical volumes by scale."""
-    table = table_of(folder, "size_invariance")
-    bound = published_value(published_values(), "size_invariance_difference", "simulation")
+    table, published = table_of(folder, "size_invariance"), published_values()
+    bound = published_value(published, "size_invariance_difference", "simulation")
+    beside = differences_beside_source(table, published)
+    digits = dict.fromkeys(table, 5)
     return [
-        Table(table, "size_invariance", digits=dict.fromkeys(table, 5), heads=VOLUME_HEADS),
+        Table(table, "size_invariance", digits=digits, heads=VOLUME_HEADS, beside_source=beside),
         Text(f"Published (Yan 2022, Fig 4.6): under {bound:g} %."),
     ]
 
@@ -173,9 +182,10 @@ def coefficient_blocks(folder: Path) -> list[Block]:
         f"The laboratory's coefficient by Archard's law, V / (F L): ({1e13 * value:.2f} ± {1e13 * error:.2f})e-13 "
         f"1/Pa; published ({1e13 * printed:.1f} ± 1)e-13."
     )
+    calibration = table_of(folder, "calibration")
     return [
         Text(laboratory),
-        Table(table_of(folder, "calibration"), "calibration"),
+        Table(calibration, "calibration", beside_source=coefficients_beside_source(calibration, published)),
         Text(limits_sentence(folder, limits)),
         Table(limits, "scaling_limits", digits=dict.fromkeys(limits, 4)),
     ]
