@@ -17,6 +17,7 @@ from bulkwear.postproc.tables.summary import patterned_name, published_value, re
 from bulkwear.postproc.wear.prediction import Prediction, joined
 from bulkwear.workflows.cases.circular_tester.comparison import worn_out_at
 from bulkwear.workflows.cases.circular_tester.flow import steady_revolutions
+from bulkwear.workflows.cases.circular_tester.model_numbers import fits_beside_ours, of_the_model
 from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW
 from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
 from bulkwear.workflows.cases.circular_tester.volume import (
@@ -61,9 +62,8 @@ STEADY_HEADS = {
     "drift_low": ("drift, interval from", "%"),
     "drift_high": ("to", "%"),
 }
-EXPERIMENT, MODEL = "Yan 2022, section 6.2.3", "Yan 2022, section 6.4.1"
+EXPERIMENT = "Yan 2022, section 6.2.3"
 UNLIKE_ITS_SUM = "seven of them are not the volume that is printed of 56 h"
-UNLIKE_ITS_EQUATIONS = "said of particle scale 1; the source's own Eq 6.2 and 6.3 make 58 % of it"
 PER_REVOLUTION = "worn volume per revolution"
 INTERVALS = "Intervals: 95 %, over packings; of one packing the scatter is unknown."
 REDUCED = "At the reduced scale told at the top of the page: a finding that is contradicted here is not thereby wrong."
@@ -115,7 +115,7 @@ def beside_the_experiment(folder: Path) -> list[Block]:
 
 def measured_beside_ours(compared: pd.DataFrame) -> pd.DataFrame:
     """Return what was measured of the comparison as values beside values, volumes after hours and per weighing; the
-    volume that sets the scale of time is given. Measured reductions stand among the findings, the model's here.
+    volume that sets the scale of time is given. Measured reductions stand among the findings, the model's numbers here.
 
     Intervals are those of means, as of all published numbers; compared: with those of one further packing
     """
@@ -128,7 +128,8 @@ def measured_beside_ours(compared: pd.DataFrame) -> pd.DataFrame:
         published_value=measured[LABORATORY],
         **{GIVEN: np.where(sets_scale, "yes", ""), "source": EXPERIMENT},
     )
-    table = pd.concat([said, _per_weighing(said[first]), _of_the_model(compared)], ignore_index=True)
+    model = of_the_model(compared, pd.read_csv(PUBLISHED))
+    table = pd.concat([said, _per_weighing(said[first]), model], ignore_index=True)
     names = {OURS: "computed_value", LOW: "computed_low", HIGH: "computed_high", "note": "reason"}
     columns = ["quantity", "setting", "unit", "published_value", *names, "packings", "source", GIVEN]
     return table[columns].replace({"unit": {"mm3": "mm³"}}).rename(columns=names)
@@ -158,15 +159,6 @@ def _per_weighing(measured: pd.DataFrame) -> pd.DataFrame:
     told = measured.assign(published_value=values, setting=f"experiment per {hours:g} h", note=UNLIKE_ITS_SUM)
     ours = told[[OURS, LOW, HIGH]].mul(hours / told["hours"], axis=0)
     return told.assign(**ours)
-
-
-def _of_the_model(compared: pd.DataFrame) -> pd.DataFrame:
-    """Return the reduction that the source prints of its model, beside ours; nothing of samples that are not its."""
-    short = compared[(compared["quantity"] == "reduction") & (compared["hours"] == compared["hours"].min())]
-    short = short[short[THESIS].notna()]
-    value = published_value(pd.read_csv(PUBLISHED), "reduction_56_h", "simulation")
-    told = {"setting": "model after 56 h, particle scale 1", "published_value": value, "note": UNLIKE_ITS_EQUATIONS}
-    return short.assign(**told, source=MODEL, **{GIVEN: ""})
 
 
 def time_words(scale: pd.Series) -> str:
@@ -246,8 +238,10 @@ def rates(study: Mapping[str, Any], folder: Path) -> list[Block]:
         "Change: from the first to the last revolution, by a straight line through the increments; the source's is that"
         f" of its fit over as many revolutions{scaled}. {INTERVALS}"
     )
+    ours = with_fits(of_study(folder, "rates"), fits)
+    beside = fits_beside_ours(ours if times == 1.0 else ours[:0])  # else the source prints no such numbers
     return [
-        Table(with_fits(of_study(folder, "rates"), fits), "rates", note, heads=heads_of(RATE) | FIT_RATE),
+        Table(ours, "rates", note, heads=heads_of(RATE) | FIT_RATE, beside_source=beside),
         Table(theirs, digits=dict.fromkeys([*TERMS, "r_squared"], FIT_DIGITS), heads=FIT_HEADS),
         *predicted_rates(of_study(folder, "rates"), error_of(study["settings"])),
     ]

@@ -8,12 +8,14 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.statistics.intervals import UNKNOWN
+from bulkwear.postproc.statistics.verdicts import AGREES, OTHER_SIZE
 from bulkwear.workflows.cases.circular_tester.hours import predictions, time_scale
 from bulkwear.workflows.cases.circular_tester.key_numbers import (
     measured_beside_ours,
     predicted_rates,
     with_fits,
 )
+from bulkwear.workflows.cases.circular_tester.model_numbers import fits_beside_ours
 from bulkwear.workflows.cases.circular_tester.tables import (
     BEYOND,
     LABORATORY,
@@ -24,6 +26,8 @@ from bulkwear.workflows.cases.circular_tester.tables import (
     loss_rows,
 )
 from bulkwear.workflows.cases.circular_tester.volume import fits_beside, times_source
+from bulkwear.workflows.report.published import published_numbers as collected
+from bulkwear.workflows.report.sections import Section, Table
 from tests.support import tester_study as study
 
 RUN = SimpleNamespace(coefficient=5e-9, width=0.1, length=0.1, distance_per_revolution=1.071)
@@ -68,14 +72,16 @@ def test_notes_say_what_is_extrapolated_and_what_is_not_sure():
 
 
 def test_measured_volumes_are_published_numbers():
-    """The experiment's volumes and the model's reduction; that which sets the scale of time is given, as is its share
-    of eight hours; one not reached is missing."""
+    """The experiment's volumes, and the model's with its reduction; those that set the scale of time are given, as is
+    their share of eight hours; one not reached is missing."""
     ours = compared(revolutions=3, packings=3, scatter=0.02)
     table = measured_beside_ours(ours.reset_index())
     found = {(row.quantity, row.setting): row for row in table.itertuples()}
     measured = {name: row.published_value for name, row in found.items()}
-    assert sorted(measured.values()) == pytest.approx([10.2, 17.9, 68.9, 82.8, 145.2, 240.3, 474.5])
-    assert table.loc[table["given"] == "yes", "published_value"].tolist() == [145.2, 17.9]
+    assert sorted(measured.values()) == pytest.approx(
+        [10.2, 17.9, 68.9, 82.8, 145.2, 154.06, 212.9, 240.3, 474.5, 483.9]
+    )
+    assert table.loc[table["given"] == "yes", "published_value"].tolist() == [145.2, 17.9, 154.06]
     early, late = (found["convex volume", f"experiment after {hours} h"] for hours in (56, 184))
     assert early.computed_low < early.computed_value < early.computed_high and early.packings == 3
     ratio = 1.0 - ours.loc[(56.0, "reduction"), ["interval_high", OURS, "interval_low"]].to_numpy(float) / 100.0
@@ -95,8 +101,8 @@ def test_measured_volumes_are_published_numbers():
     )
 
 
-@pytest.mark.parametrize(("foreign", "kept"), [(["convex"], 3), (["plain", "convex"], 2)])
-def test_nothing_published_stands_beside_samples_that_are_not_the_sources(foreign, kept):
+@pytest.mark.parametrize(("foreign", "kept", "given"), [(["convex"], 5, 3), (["plain", "convex"], 2, 2)])
+def test_nothing_published_stands_beside_samples_that_are_not_the_sources(foreign, kept, given):
     """Neither in the comparison nor among the published numbers; the plain volume that sets the scale of time stays,
     as given.
     """
@@ -108,7 +114,7 @@ def test_nothing_published_stands_beside_samples_that_are_not_the_sources(foreig
     assert not table["note"].str.contains("% for its model").any()
     numbers = measured_beside_ours(table.reset_index())
     assert set(numbers["quantity"]) == {"plain volume"} and len(numbers) == kept
-    assert (numbers["given"] == "yes").sum() == 2
+    assert (numbers["given"] == "yes").sum() == given
 
 
 def test_fits_are_told_at_the_coefficient_and_of_the_sources_samples():
@@ -123,6 +129,28 @@ def test_fits_are_told_at_the_coefficient_and_of_the_sources_samples():
     assert doubled["fit_change_percent"].tolist() == pytest.approx(own["fit_change_percent"].tolist())
     foreign = with_fits(rates, fits_beside(study.PUBLISHED_FITS, {"convex": "why"}))
     assert foreign["fit_mm3_per_revolution"].notna().tolist() == [True, False]
+
+
+def test_fits_stand_beside_rates_of_their_surface_and_scale():
+    """Scales that the source has none of leave no line; the interval over packings decides."""
+    rates = pd.DataFrame(
+        {
+            "surface": ["plain", "convex", "convex"],
+            "shape": "channel",
+            "particle_scale": [1.0, 4.0, 6.0],
+            "revolutions": 17.0,
+            "rate_mm3_per_revolution": [73.0, 100.0, 40.0],
+            "rate_mm3_per_revolution_low": [72.0, 99.0, 39.0],
+            "rate_mm3_per_revolution_high": [74.0, 101.0, 41.0],
+            "packings": 3,
+        }
+    )
+    beside = fits_beside_ours(with_fits(rates, fits_beside(study.PUBLISHED_FITS, (), 1.0)))
+    found = collected([Section("Volume", [Table(rates, beside_source=beside)])]).set_index("finding")
+    names = ("plain, particle scale 1", "convex, particle scale 4")
+    plain, convex = (f"worn volume per revolution, {name}, channel" for name in names)
+    assert found["verdict"].to_dict() == {plain: AGREES, convex: OTHER_SIZE}
+    assert found.loc[convex, "factor"] == pytest.approx(100.0 / (41.62 + 17.0 * 1.57))
 
 
 def test_losses_stand_beside_the_scanned_ones():
