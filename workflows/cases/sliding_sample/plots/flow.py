@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, SMALLEST_FONT, colour, marker, new_figure
+from bulkwear.workflows.cases.sliding_sample.screening.profile_numbers import LAYER
 
-LAYER = 5.0  # mm, of the published profiles, whose particles have their real size
 PANELS = {  # column of a profile -> its quantity in the published table and the label of the axis
     "velocity_m_per_s": ("velocity", "Velocity with\nthe sample (m/s)"),
     "sideways_ratio": ("sideways_ratio", "Sideways velocity over\nthat with the sample (-)"),

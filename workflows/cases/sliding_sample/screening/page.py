@@ -15,7 +15,8 @@ from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.tables.display import in_display_units
 from bulkwear.postproc.tables.packings import BY, over_packings
 from bulkwear.postproc.tables.summary import patterned_name, read_summary
-from bulkwear.workflows.cases.sliding_sample.study import compares_surfaces, has_findings
+from bulkwear.workflows.cases.sliding_sample.screening.profile_numbers import profile_values
+from bulkwear.workflows.cases.sliding_sample.study import compares_surfaces, has_findings, published_rows
 from bulkwear.workflows.config.claims import date_of_rules
 from bulkwear.workflows.report.sections import Block, Pictures, Points, Section, Table, Text
 from bulkwear.workflows.report.sensitivity import read_indices, sensitivity_blocks
@@ -40,6 +41,7 @@ def told(study: Study) -> dict[str, Any]:
         "findings": has_findings(study),
         "confirms": study.confirms,
         "compares_surfaces": compares_surfaces(study),
+        "published_rows": published_rows(study),
     }
 
 
@@ -55,7 +57,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
         Section(of_wear, [*wear, Pictures(["wear_by_regime", "normal_force_by_regime"])]),
         *(findings(study, folder) if of_study["findings"] else []),
         Section("Steady or not", [*steady, Pictures(["relative_velocity", "wear_gradient"])]),
-        Section("The flow", [Pictures(["flow_views", "flow_views_second", *profiles])]),
+        Section("The flow", [Pictures(["flow_views", "flow_views_second", *profiles]), *profile_values(study, folder)]),
         *([regression(folder), best_designs(study["name"], folder)] if of_study["factors"] else []),
     ]
 
