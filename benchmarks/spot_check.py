@@ -17,7 +17,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -28,6 +28,7 @@ from benchmarks.tilted_bed import CASE, REFERENCE
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.project import PACKAGE, work_here
 from bulkwear.workflows.engine.provenance import code_of_cases
+from bulkwear.workflows.engine.state import digest
 from bulkwear.workflows.report.provenance_of_pages import Origin, read_origins, versions_in
 from bulkwear.workflows.report.simulated import newer_parts
 from bulkwear.workflows.report.spot_checks import SpotCheck, as_new_as, keep_check, passed, read_checks
@@ -62,14 +63,16 @@ class VersionError(RuntimeError):
     """A version of the code cannot simulate the row; the message says which and why."""
 
 
-def wanted(origin: Origin, docs: Path) -> list[str]:
-    """Return the commits that simulated a page and are older than today's code, those that passed a check not."""
+def wanted(origin: Origin, docs: Path) -> dict[str, str]:
+    """Return {commit: hash of its code} of what simulated a page and is older than today's code, those that passed a
+    check not.
+    """
     if not origin.checked_by:
-        return []
+        return {}
     now, checks = code_of_cases((origin.case,)), read_checks(docs)
     found = [as_new_as(each, passed(each, origin.checked_by, checks)) for each in versions_in(origin)]
-    old = [each for each in found if newer_parts(each, now) and each.found]
-    return list(dict.fromkeys(str(each.found["commit"]) for each in old if each.found["commit"]))
+    old = [each.found for each in found if newer_parts(each, now) and each.found and each.found["commit"]]
+    return {str(each["commit"]): digest(each["parts"]) for each in old}
 
 
 def sample_of(study: str) -> Sample:
@@ -143,18 +146,20 @@ def check_pages(origins: Iterable[Origin], docs: Path, folder: Path) -> bool:
 
     What cannot be simulated is told on standard error, and the next page's turn comes.
     """
-    same, asked = True, set()
+    same, done = True, {}
     for origin in origins:
-        for commit in wanted(origin, docs):
-            if (origin.checked_by, commit) in asked:  # one row speaks for several pages
+        for commit, code in wanted(origin, docs).items():
+            key = origin.checked_by, code  # one row speaks for several pages, and for commits of the same code
+            if key not in done:
+                try:
+                    done[key] = spot_check(origin, commit, folder)
+                except VersionError as fault:
+                    print(fault, file=sys.stderr)
+                    done[key], same = None, False
+            if (check := done[key]) is None:
                 continue
-            asked.add((origin.checked_by, commit))
-            try:
-                check = spot_check(origin, commit, folder)
-            except VersionError as fault:
-                print(fault, file=sys.stderr)
-                same = False
-                continue
+            if commit != check.before:
+                check = replace(check, before=commit, simulated_by=check.before)
             keep_check(docs, check)
             same &= not check.difference
             said = f"differs: {check.difference}" if check.difference else "the same numbers but for round-off"

@@ -45,12 +45,12 @@ def simulated(monkeypatch, folder, **volumes):
 def test_the_version_that_is_older_is_checked_once(monkeypatch, now, page, tmp_path, capsys):
     """The same numbers are kept, and the version is then not asked for again."""
     simulated(monkeypatch, tmp_path, before=1.25, today=1.25)
-    assert module.wanted(page, tmp_path) == ["before"]
+    assert list(module.wanted(page, tmp_path)) == ["before"]
     assert module.check_pages([page], tmp_path, tmp_path)
     assert "before and today, 1 tables: the same numbers" in capsys.readouterr().out
     assert read_checks(tmp_path)[0].code["parts"] == now["parts"]
-    assert module.wanted(page, tmp_path) == []
-    assert module.wanted(replace(page, study=""), tmp_path) == []
+    assert not module.wanted(page, tmp_path)
+    assert not module.wanted(replace(page, study=""), tmp_path)
 
 
 def test_a_sum_in_another_order_is_no_difference(monkeypatch, page, tmp_path):
@@ -60,12 +60,22 @@ def test_a_sum_in_another_order_is_no_difference(monkeypatch, page, tmp_path):
     assert read_checks(tmp_path)[0].difference == ""
 
 
+def test_commits_of_the_same_code_are_simulated_once(monkeypatch, page, tmp_path):
+    """The other one's check names who simulated in its place, and both are as new as today's code."""
+    (old, now_) = page.versions
+    twin = old | {"found": old["found"] | {"commit": "twin"}}
+    simulated(monkeypatch, tmp_path, before=1.25, today=1.25)
+    assert module.check_pages([page, replace(page, versions=[twin, now_])], tmp_path, tmp_path)
+    assert [(each.before, each.simulated_by) for each in read_checks(tmp_path)] == [("before", ""), ("twin", "before")]
+    assert not module.wanted(replace(page, versions=[old, twin]), tmp_path)
+
+
 def test_another_number_is_a_difference(monkeypatch, page, tmp_path):
     """It is kept with its table, and asked for again."""
     simulated(monkeypatch, tmp_path, before=1.25, today=1.25 * (1.0 + 2.0 * module.ROUND_OFF))
     assert not module.check_pages([page], tmp_path, tmp_path)
     assert "wear.csv: volume_m3 differs" in read_checks(tmp_path)[0].difference
-    assert module.wanted(page, tmp_path) == ["before"]
+    assert list(module.wanted(page, tmp_path)) == ["before"]
 
 
 def test_code_that_is_not_committed_and_runs_without_tables_are_refused(monkeypatch, now, page, tmp_path):

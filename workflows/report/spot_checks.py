@@ -30,6 +30,7 @@ class SpotCheck:
     before, after: commits; code: what `provenance.simulating_code` says of the later one
     date: day, UTC; tables: of its runs, how many were compared
     difference: "" where all of their numbers are the same but for round-off, else in which tables they are not
+    simulated_by: a commit that simulated in place of `before`, by the same code; "" where that did itself
     """
 
     study: str
@@ -41,6 +42,7 @@ class SpotCheck:
     date: str
     tables: int
     difference: str = ""
+    simulated_by: str = ""
 
 
 def read_checks(docs: Path) -> list[SpotCheck]:
