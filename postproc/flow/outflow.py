@@ -12,6 +12,7 @@ from bulkwear.postproc.readers.solver_log import thermo_table
 DISCHARGED = 0.99  # -, of the mass that flows out in the end; the last grains trickle
 LEAST_OUTFLOW = 0.2  # -, of the particles: an upper box that keeps more is blocked, no slope is so steep
 DISCHARGED_BAND = (0.98, 0.995)  # -, other readings of "has stopped"; half their distance in time is the uncertainty
+NEEDED = ("Step", "Atoms", "opened", "out_kg", "out_n")  # columns of the log
 
 
 class OutflowError(ValueError):
@@ -26,9 +27,11 @@ def outflow_curve(log: str | Path, time_step: float, spheres: int = 1) -> pd.Dat
     """Return time_s since the opening, mass_kg and count that have flowed out by then, and the particles still there.
 
     log: of a bulk test, with the columns opened, out_kg and out_n, which counts clumps, not their spheres; time_step: s
-    spheres: of a particle, which the solver has as so many. Raises OutflowError when nothing was opened.
+    spheres: of a particle, which the solver has as so many. Raises OutflowError when nothing was opened, SolverLogError
+    for a log without such a column.
     """
-    thermo = pd.DataFrame(thermo_table(log)).drop_duplicates("Step", keep="last")
+    printed = thermo_table(log)
+    thermo = pd.DataFrame({name: printed[name] for name in NEEDED}).drop_duplicates("Step", keep="last")
     opened = thermo[thermo["opened"] == 1.0]
     if opened.empty:
         raise OutflowError(f"{log}: the box was never opened, allowed is the log of a test that was run to its end.")

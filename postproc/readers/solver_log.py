@@ -9,6 +9,7 @@ that file.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from itertools import zip_longest
 from pathlib import Path
 
@@ -68,8 +69,31 @@ KNOWN_CAUSES = (
 )
 
 
+PRINTED_AS = {"Step": "step", "Atoms": "atoms"}  # columns of a log -> words of `thermo_style`; others are variables
+
+
 class SolverLogError(ValueError):
     """A log or screen file without what was looked for; the message names the file."""
+
+
+class ThermoTable(dict[str, np.ndarray]):
+    """The thermo columns of a log by name; one that its deck does not print raises SolverLogError, not KeyError."""
+
+    def __init__(self, columns: Mapping[str, np.ndarray], log: Path | str):
+        super().__init__(columns)
+        self.log = log
+
+    def __missing__(self, name: str) -> np.ndarray:
+        found = ", ".join(column for column in self if column != "run") or "none"
+        word = PRINTED_AS.get(name, f"v_{name}")
+        raise SolverLogError(
+            f"{self.log}: found no column {name} among those that the solver printed, {found}; allowed is the log of a"
+            f" deck whose thermo_style has {word} (templates)."
+        )
+
+    def of_rows(self, chosen: np.ndarray) -> ThermoTable:
+        """Return the table of some of its rows; chosen: (rows,) bool."""
+        return ThermoTable({name: values[chosen] for name, values in self.items()}, self.log)
 
 
 def _numbers(line: str) -> list[float] | None:
@@ -79,7 +103,7 @@ def _numbers(line: str) -> list[float] | None:
         return None
 
 
-def thermo_table(path: Path | str) -> dict[str, np.ndarray]:
+def thermo_table(path: Path | str) -> ThermoTable:
     """All thermo rows of a log file.
 
     Returns one (rows,) float64 array per thermo column, NaN where a run did not print it, units of the deck;
@@ -99,14 +123,13 @@ def thermo_table(path: Path | str) -> dict[str, np.ndarray]:
                 rows.append({"run": run, **dict(zip(columns, row, strict=True))})
     names = dict.fromkeys(name for row in rows for name in row)
     table = {name: np.array([row.get(name, np.nan) for row in rows]) for name in names}
-    return {**table, "run": np.array([row["run"] for row in rows], np.int64)}
+    return ThermoTable({**table, "run": np.array([row["run"] for row in rows], np.int64)}, path)
 
 
-def thermo_rows(path: Path) -> dict[str, np.ndarray]:
+def thermo_rows(path: Path) -> ThermoTable:
     """Return the thermo table without the set-up row of each run, which holds no force."""
     thermo = thermo_table(path)
-    told = np.diff(thermo["run"], prepend=-1) == 0
-    return {name: values[told] for name, values in thermo.items()}
+    return thermo.of_rows(np.diff(thermo["run"], prepend=-1) == 0)
 
 
 def exchanges(path: Path | str) -> dict[str, np.ndarray]:

@@ -12,6 +12,7 @@ from bulkwear.postproc.flow.outflow import (
     discharge_time,
     outflow_curve,
 )
+from bulkwear.postproc.readers.solver_log import SolverLogError
 
 EXACT = 1e-9  # relative: interpolation on a straight line
 
@@ -86,6 +87,14 @@ def test_a_box_that_was_never_opened_is_refused(tmp_path):
     """A log that ends before the opening has no outflow."""
     (tmp_path / "log").write_text(LOG[: LOG.index("Loop") + 18])
     with pytest.raises(OutflowError, match="never opened"):
+        outflow_curve(tmp_path / "log", time_step=1e-3)
+
+
+@pytest.mark.parametrize(("column", "word"), [("out_n", "v_out_n"), ("Atoms", "atoms")])
+def test_a_column_that_the_deck_does_not_print_is_named(tmp_path, column, word):
+    """The fault has the log, the column, and the word that thermo_style lacks."""
+    (tmp_path / "log").write_text(LOG.replace(column, "other"))
+    with pytest.raises(SolverLogError, match=f"log: found no column {column} .*whose thermo_style has {word} "):
         outflow_curve(tmp_path / "log", time_step=1e-3)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bulkwear.postproc.flow.wall_shear import WallShearError, wall_friction_angle
+from bulkwear.postproc.readers.solver_log import SolverLogError
 
 LOAD, FRICTION, NOISE = 14.0, 0.38, 0.2  # N, -, N
 WITHIN = 3.0  # standard uncertainties: one seeded series may be that far off
@@ -41,7 +42,6 @@ def test_uncertainty_is_that_of_the_fluctuation(tmp_path):
 @pytest.mark.parametrize(
     ("shear", "normal", "columns", "words"),
     [
-        ([1.0] * 50, [2.0] * 50, "other normal_n", "no column shear_n"),
         ([1.0] * 39, [2.0] * 39, "shear_n normal_n", "39 forces on the plate, allowed are 40"),
         ([0.0] * 50, [0.0] * 50, "shear_n normal_n", "no normal force on the plate"),
     ],
@@ -50,3 +50,9 @@ def test_a_log_without_wall_friction_is_refused(tmp_path, shear, normal, columns
     """A fault names the log, what it lacks and what is allowed."""
     with pytest.raises(WallShearError, match=f"log.liggghts: {words}"):
         wall_friction_angle(log(tmp_path, shear, normal, columns))
+
+
+def test_a_log_without_the_forces_of_the_plate_is_refused(tmp_path):
+    """A deck of one's own that does not print a force is told which, and that it has to."""
+    with pytest.raises(SolverLogError, match=r"log\.liggghts: found no column shear_n.*thermo_style has v_shear_n"):
+        wall_friction_angle(log(tmp_path, [1.0] * 50, [2.0] * 50, "other normal_n"))

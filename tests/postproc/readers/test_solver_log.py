@@ -13,6 +13,7 @@ from bulkwear.postproc.readers.solver_log import (
     last_step,
     reported_triangles,
     solver_version,
+    thermo_rows,
     thermo_table,
     warnings,
 )
@@ -81,6 +82,26 @@ def test_runs_with_different_columns_share_a_table(tmp_path):
     table = thermo_table(path)
     np.testing.assert_array_equal(table["Atoms"], [5, 5, np.nan, np.nan])
     np.testing.assert_array_equal(table["KinEng"], [np.nan, np.nan, 0.5, 0.25])
+
+
+@pytest.mark.parametrize("read", [thermo_table, thermo_rows])
+def test_a_column_that_no_run_prints_is_named(read):
+    """One sentence instead of a KeyError: log, column, those there are, and the word of the deck that brings it."""
+    with pytest.raises(SolverLogError) as fault:
+        read(LOG)["force_x"]
+    assert str(fault.value) == (
+        f"{LOG}: found no column force_x among those that the solver printed, Step, Atoms, KinEng, CPU; allowed is the"
+        " log of a deck whose thermo_style has v_force_x (templates)."
+    )
+
+
+def test_some_rows_of_a_table_name_its_log_too():
+    """The second run's rows alone, and the same fault."""
+    table = thermo_table(LOG)
+    second = table.of_rows(table["run"] == 1)
+    np.testing.assert_array_equal(second["Step"], table["Step"][2:])
+    with pytest.raises(SolverLogError, match="no column level_h"):
+        second["level_h"]
 
 
 def test_the_last_step_is_found_in_the_tail():

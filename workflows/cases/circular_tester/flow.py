@@ -140,8 +140,7 @@ def _after(table: pd.DataFrame, revolutions: float) -> pd.DataFrame:
 def _turning(path: Path, revolution_steps: int) -> pd.DataFrame:
     """What the bed does over the sample, from the last run of its log, which turns it, by revolution of that run."""
     thermo = thermo_table(path)
-    last = thermo["run"] == thermo["run"].max()
-    thermo = {name: values[last] for name, values in thermo.items()}
+    thermo = thermo.of_rows(thermo["run"] == thermo["run"].max())
     return _over_sample(thermo, thermo["Step"] - thermo["Step"][0], revolution_steps).iloc[1:]  # first: no motion yet
 
 
