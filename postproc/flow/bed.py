@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.mesh import SurfaceMesh
-from bulkwear.postproc.readers.cycle_folders import cycle_folders
+from bulkwear.postproc.readers.cycle_folders import cycle_folders, step_files
 
 SHOWN_LENGTHS = 1.0  # piece of bed shown to either side of the middle of the sample, in lengths of the sample
 MOST_PARTICLES = 8_000  # drawn per picture: thicker beds become a slab behind the cut
@@ -18,7 +18,7 @@ NEEDED = ("id", "x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz", "
 
 def snapshots(cycle_folder: str | Path) -> list[Path]:
     """Return the bed dumps of a wear cycle in the order of their time steps."""
-    return sorted(Path(cycle_folder).glob("bed_*.dump"), key=lambda path: int(path.stem.removeprefix("bed_")))
+    return step_files(cycle_folder, "bed_", ".dump")
 
 
 def last_snapshot(run_folder: str | Path) -> Path:
@@ -28,7 +28,9 @@ def last_snapshot(run_folder: str | Path) -> Path:
     for folder in reversed(cycle_folders(run_folder)):
         if dumps := snapshots(folder):
             return dumps[-1]
-    raise FileNotFoundError(f"{run_folder}: no cycle_*/bed_*.dump found, at least one wear cycle must have been run.")
+    raise FileNotFoundError(
+        f"{run_folder}: no cycle_*/bed_<step>.dump found, at least one wear cycle must have been run."
+    )
 
 
 def read_snapshot(path: str | Path) -> pd.DataFrame:

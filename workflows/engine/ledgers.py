@@ -15,6 +15,7 @@ import numpy as np
 
 from bulkwear.postproc.mesh import stl_corners
 from bulkwear.postproc.readers.contacts import read_contact_batches
+from bulkwear.postproc.readers.cycle_folders import step_files
 from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.postproc.wear.ledger import LedgerBuilder, columns_of_solver
 from bulkwear.postproc.wear.mesh_frame import facet_frames
@@ -71,8 +72,9 @@ def summed_by_solver(chain: Chain, span: Span, folder: Path, mesh: Mesh) -> Colu
 def history_of_solver(chain: Chain, span: Span, folder: Path, mesh: Mesh) -> Iterator[tuple[int, Columns]]:
     """Yield steps of a cycle and what the solver had summed until then. Raises LoadLedgerError."""
     facets = _facets(mesh)
-    for steps in sorted(int(path.suffix[1:]) for path in folder.glob(f"{mesh.ledger}.*")):
-        yield steps, _columns_of_file(folder / f"{mesh.ledger}.{steps}", chain, span, mesh, steps, *facets)
+    for path in step_files(folder, f"{mesh.ledger}.", ""):
+        steps = int(path.suffix[1:])
+        yield steps, _columns_of_file(path, chain, span, mesh, steps, *facets)
 
 
 def _columns_of_file(

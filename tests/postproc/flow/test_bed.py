@@ -50,6 +50,13 @@ def test_broken_snapshot_is_named(tmp_path, rows):
         read_snapshot(write_dump(tmp_path / "bed_0.dump", rows=rows))
 
 
+def test_dumps_of_a_users_own_deck_are_left_alone(tmp_path):
+    """A project's template may dump what it likes beside the snapshots: the newest of these is still the last one."""
+    write_dump(tmp_path / "cycle_001" / "bed_200.dump")
+    (tmp_path / "cycle_001" / "bed_mine_900.dump").write_text("of another kind")
+    assert last_snapshot(tmp_path).name == "bed_200.dump"
+
+
 def test_other_dumps_are_refused(tmp_path):
     """A dump without the columns is refused with what is needed."""
     path = tmp_path / "bed_0.dump"

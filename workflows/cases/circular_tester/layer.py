@@ -57,7 +57,7 @@ def reduce_layer(
     """
     dumps = [path for path in snapshots(cycle_folder) if path.name != FIRST_SNAPSHOT]
     if not dumps:
-        raise FileNotFoundError(f"{cycle_folder}: no bed_*.dump found, at least one is needed to know the flow.")
+        raise FileNotFoundError(f"{cycle_folder}: no bed_<step>.dump found, at least one is needed to know the flow.")
     rows = []
     for path in dumps:
         found = layer.of(read_snapshot(path))

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.flow.bed import read_snapshot
+from bulkwear.postproc.readers.cycle_folders import step_files
 from bulkwear.postproc.readers.dump_text import read_frames
 from bulkwear.workflows.cases.equipment.parameters import drawn_mass_scatter, filled_mass
 from bulkwear.workflows.engine.beds import MASS_TOLERANCE, BedMeasure
@@ -145,7 +146,7 @@ def stray_places(folder: Path) -> list[str]:
 
 def pictures_of(folder: Path) -> list[Path]:
     """Return the snapshots of the particles in a block, in the order of their steps."""
-    return sorted(folder.glob("picture_*.dump"), key=lambda path: int(path.stem.removeprefix("picture_")))
+    return step_files(folder, "picture_", ".dump")
 
 
 def _place(row: np.ndarray) -> str:

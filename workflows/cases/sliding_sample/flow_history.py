@@ -87,7 +87,7 @@ def reduce_snapshots(cycle_folder: str | Path, run: RunFlow, start: float) -> li
     """
     dumps = [path for path in snapshots(cycle_folder) if path.name != FIRST_SNAPSHOT]
     if not dumps:
-        raise FileNotFoundError(f"{cycle_folder}: no bed_*.dump found, at least one is needed to know the flow.")
+        raise FileNotFoundError(f"{cycle_folder}: no bed_<step>.dump found, at least one is needed to know the flow.")
     travel_per_step = run.velocity * run.time_step
     bins, spins = BinSums(run.bins, travel_per_step, INTERVAL), SpinSums(run.segments, travel_per_step, INTERVAL)
     add_dumps(((path, start) for path in dumps), [bins, spins])
