@@ -346,7 +346,7 @@ def test_a_bad_project_is_one_sentence(tmp_path, file, old, new, sentence):
     [
         (TEMPLATE, "{% if %}\n", f"{TEMPLATE}, line 1: "),
         (TEMPLATE, "\n{{ remark | uper }}\n", f"{TEMPLATE}, line 2: No filter named 'uper'."),
-        (TEMPLATE, "{{ remark / 3 }}\n", f"{TEMPLATE}: TypeError: "),
+        (TEMPLATE, "{{ remark / 3 }}\n", f"{TEMPLATE}, line 1: TypeError: "),
         (TEMPLATE, "\ufeffunits si\n", f"{TEMPLATE}: found a byte order mark, which the solver takes for a word"),
         ("templates/_shared/walls.in.j2", "\n", "templates/_shared/walls.in.j2: the file is empty, allowed is a"),
         ("templates/_shared/domain.in.j2", "{{ colour }}\n", "templates/_shared/domain.in.j2: parameter colour is not"),

@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
+from traceback import extract_tb
 from types import MappingProxyType
 from typing import Any
 
@@ -203,8 +205,8 @@ def used_sections(template: str, parameters: Mapping[str, Any], **words: Any) ->
 def render(template: str, parameters: Mapping[str, Any]) -> str:
     """Return the deck of a template, e.g. "settled_bed"; parameters hold its `whole_sections` too.
 
-    Raises DeckError for missing parameters, for unused ones but in a project's own template, and for an own word that
-    is one of the other parameters.
+    Raises DeckError for missing parameters, for unused ones but in a project's own template, for an own word that is
+    one of the other parameters, and, with the line, for what fails while the template is filled.
     """
     own = parameters.get(OWN, {})
     given = {name: value for name, value in parameters.items() if name != OWN}
@@ -227,4 +229,13 @@ def render(template: str, parameters: Mapping[str, Any]) -> str:
     try:
         return templates_read()[0].get_template(f"{template}.in.j2").render({**given, **own})
     except Exception as fault:  # what is computed in a template may fail in any way
-        raise DeckError(f"{shown_template(template)}: {type(fault).__name__}: {fault}.") from fault
+        said = f"{type(fault).__name__}: {str(fault).removesuffix('.')}."
+        raise DeckError(f"{_place_of(fault, template)}: {said}") from fault
+
+
+def _place_of(fault: Exception, template: str) -> str:
+    """Return the file, and where it is known the line, of a template or of a partial that a fault arose in."""
+    lines = [(Path(frame.filename), frame.lineno) for frame in extract_tb(fault.__traceback__)]
+    files = {template_file(name): name.removesuffix(".in.j2") for name in _uses(template, {}).variables}
+    innermost = next(((files[path], line) for path, line in reversed(lines) if path in files), None)
+    return f"{shown_template(innermost[0])}, line {innermost[1]}" if innermost else shown_template(template)

@@ -185,6 +185,30 @@ def test_words_are_names_and_values(words, fault):
     assert str(caught.value) == f"command line: {fault}."
 
 
+@pytest.mark.parametrize(
+    ("text", "part", "said"),
+    [
+        ("units si\n{{ a / b }}\n", "", r"templates/case\.in\.j2, line 2: ZeroDivisionError: division by zero\."),
+        (
+            '{% include "part.in.j2" %}\n',
+            "1\n2\n{{ a.b }}\n",
+            r"templates/part\.in\.j2, line 3: UndefinedError: '[^.]*'\.",
+        ),
+        ("1\n2\n{% for x in a %}{% endfor %}", "", r"templates/case\.in\.j2, line 3: TypeError: [^.]*\."),
+    ],
+)
+def test_a_fault_while_a_template_is_filled_has_its_line(tmp_path, monkeypatch, text, part, said):
+    """The file and the line are those of the partial where the fault is in one; the sentence has one full stop."""
+    monkeypatch.setattr(template_files, "current_project", lambda: Project(tmp_path, package=tmp_path))
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates/case.in.j2").write_text(text)
+    (tmp_path / "templates/part.in.j2").write_text(part)
+    used = template_variables("case")
+    with pytest.raises(DeckError) as fault:
+        render("case", {name: value for name, value in {"a": 3, "b": 0}.items() if name in used})
+    assert re.fullmatch(said, str(fault.value))
+
+
 def test_a_setting_that_is_not_given_is_named():
     """A template that asks for a setting of the solver that there is not says which."""
     given = settled_bed(run_and_bed(tiny_study())[1])
