@@ -6,6 +6,7 @@ those of every case and those of a sliding sample are here.
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -34,6 +35,7 @@ NO_VALUES = (
     *("NULL", "NaN", "None", "n/a", "nan", "null"),
 )
 OTHER_VALUES = ("true", "false", "inf", "infinity")
+SHOWN_DIGITS = 6  # of a length in a sentence
 SHOWN = 5e-6  # relative: lengths are shown to six digits, and the one that a sentence names is enough
 SAMPLE_ELEMENTS = 4  # elements along the shorter side of a sample; fewer give no map
 
@@ -116,6 +118,14 @@ def _is_setting(run: CheckedRun, key: str) -> bool:
 
 def millimetres(metres: float) -> str:
     return f"{metres * 1000.0:.6g} mm"
+
+
+def shown_inside(length: float, sign: int) -> str:
+    """Return a length (m) as a sentence names it, rounded down (sign -1) or up (1), so that it is within its bound."""
+    if not length:
+        return millimetres(length)
+    digit = 10.0 ** (math.floor(math.log10(abs(length))) - SHOWN_DIGITS + 1)
+    return millimetres(digit * (math.floor, math.ceil)[sign > 0](length / digit))
 
 
 def reaches(length: float, least: float) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from bulkwear.postproc.reference.sphere_contact import effective_modulus, hertz_overlap
-from bulkwear.workflows.config.run_checks import CheckedRun, Fault, millimetres, physical_modulus_known
+from bulkwear.workflows.config.run_checks import CheckedRun, Fault, millimetres, physical_modulus_known, shown_inside
 from bulkwear.workflows.engine.derived import (
     physical_patch_factor,
     rayleigh_time,
@@ -134,7 +134,7 @@ def track_on_disc(run: CheckedRun) -> Fault | None:
     if least <= disc["radius_m"] < most:
         return None
     return "disc.radius_mm", (
-        f"at least {millimetres(least)}, the track and two contact radii, and below {millimetres(most)}, two tracks"
+        f"at least {shown_inside(least, 1)}, the track and two contact radii, and below {millimetres(most)}, two tracks"
     )
 
 
@@ -166,7 +166,7 @@ def element_resolves_contact(run: CheckedRun) -> Fault | None:
     largest = contact / ELEMENTS_ACROSS_CONTACT
     if not run.parameters["wear"]["deform"] or run.parameters["disc"]["element_size_m"] <= largest:
         return None
-    return "disc.element_size_mm", f"at most {millimetres(largest)}, four radii of the pin's contact"
+    return "disc.element_size_mm", f"at most {shown_inside(largest, -1)}, four radii of the pin's contact"
 
 
 PIN_CHECKS = (

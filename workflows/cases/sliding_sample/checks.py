@@ -22,12 +22,12 @@ from bulkwear.workflows.config.run_checks import (
     pattern_fits,
     physical_modulus_known,
     reaches,
+    shown_inside,
 )
 from bulkwear.workflows.engine.derived import ADAPTIVE, PERIODIC, ROUNDING, WINDOW, window_lengths
 from bulkwear.workflows.engine.grains import CLUMP, grain_kind, largest_extent, smallest_radius
 from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
-SHOWN_DIGITS = 6  # of a length in a sentence
 PACKING = "packing"  # block of settings, of containers
 LARGEST_AHEAD = 5.0  # m, as the schema has it for bed.ahead_mm
 LARGEST_TRAVEL = 100.0  # m, as the schema has it for sliding.travel_mm
@@ -62,16 +62,8 @@ def sample_in_bed(run: CheckedRun) -> Fault | None:
         return None
     return (
         "sample.width_mm",
-        f"at most {_shown_inside(room, -1)}, bed.width_mm less a skirt of {millimetres(skirt)} on each side",
+        f"at most {shown_inside(room, -1)}, bed.width_mm less a skirt of {millimetres(skirt)} on each side",
     )
-
-
-def _shown_inside(length: float, sign: int) -> str:
-    """Return a length (m) as a sentence names it, rounded down (sign -1) or up (1): a mesh must lie in
-    the domain.
-    """
-    digit = 10.0 ** (math.floor(math.log10(abs(length))) - SHOWN_DIGITS + 1)
-    return millimetres(digit * (math.floor, math.ceil)[sign > 0](length / digit)) if length else millimetres(length)
 
 
 def skirt_in_bed(run: CheckedRun) -> Fault | None:
@@ -79,7 +71,7 @@ def skirt_in_bed(run: CheckedRun) -> Fault | None:
     skirt = run.parameters["derived"]["skirt_width_m"]
     for key in ("ahead", "behind"):
         if run.parameters["bed"][f"{key}_m"] < skirt:
-            return f"bed.{key}_mm", f"at least {_shown_inside(skirt, 1)}, the width of the sample's skirt"
+            return f"bed.{key}_mm", f"at least {shown_inside(skirt, 1)}, the width of the sample's skirt"
     return None
 
 

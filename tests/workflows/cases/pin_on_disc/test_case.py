@@ -130,7 +130,7 @@ FAULTS = [
     ),
     (
         {"disc": {"element_size_mm": 1.5}},
-        "command line: disc.element_size_mm is 1.5 for row c17-conserving, allowed is at most 1.39919 mm, four radii of"
+        "command line: disc.element_size_mm is 1.5 for row c17-conserving, allowed is at most 1.39918 mm, four radii of"
         " the pin's contact.",
     ),
     (
@@ -410,3 +410,15 @@ def test_a_damaged_newest_cycle_is_done_again_from_what_was_kept(finished, tmp_p
     chain = replace(finished, folder=folder, surface=folder / "surface.vtu")
     cycles.run_chain(chain)
     assert (folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("key", "wrong", "pin"),
+    [("element_size_mm", 3.0, {}), ("radius_mm", 22.1, {}), ("radius_mm", 22.1, {"radius_mm": 7})],
+)
+def test_a_bound_of_the_disc_that_a_refusal_names_is_allowed(key, wrong, pin):
+    """It is rounded to the side that is allowed."""
+    with pytest.raises(ConfigError) as fault:
+        load_study("pin_on_disc", overrides={"pin": pin, "disc": {key: wrong}})
+    bound = float(re.search(r"allowed is at (?:most|least) (\S+) mm", str(fault.value))[1])
+    load_study("pin_on_disc", overrides={"pin": pin, "disc": {key: bound}})
