@@ -105,8 +105,9 @@ def check_volume(law: str, parameters: Mapping[str, float], file: str) -> None:
             for given in ((once, parameters), (twice, parameters), (once, double))
         ]
     except Exception as fault:  # a law of a project's own may fail in any way
+        words = str(fault).removesuffix(".")
         raise ConfigError(
-            f"{file}: the law {law} ends in {type(fault).__name__}: {fault}; allowed are columns of the ledger and the"
+            f"{file}: the law {law} ends in {type(fault).__name__}: {words}; allowed are columns of the ledger and the"
             " law's parameters, in SI."
         ) from None
     volume, after_twice, by_twice = volumes

@@ -224,6 +224,6 @@ def import_fault(fault: Exception, path: Path, folder: Path) -> str:
     ours = [(Path(name), line) for name, line in places if Path(name).is_relative_to(folder)]
     file, line = ours[-1] if ours else (path, None)
     shown = file.relative_to(folder).as_posix() if file.is_relative_to(folder) else str(file)
-    words = fault.msg if isinstance(fault, SyntaxError) else str(fault)
+    words = (fault.msg if isinstance(fault, SyntaxError) else str(fault)).removesuffix(".")
     where = f"{shown}, line {line}" if line else shown
     return f"{where}: {type(fault).__name__}: {words}; allowed is Python that runs."

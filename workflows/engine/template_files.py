@@ -118,6 +118,7 @@ def parsed(environment: jinja2.Environment, name: str, path: Path, _written: int
     try:
         return environment.parse(path.read_text(encoding="utf-8-sig"))
     except jinja2.TemplateSyntaxError as fault:
-        raise DeckError(f"{shown}, line {fault.lineno}: {fault.message}.") from fault
+        words = fault.message.removesuffix(".")
+        raise DeckError(f"{shown}, line {fault.lineno}: {words}.") from fault
     except UnicodeDecodeError as fault:
         raise DeckError(f"{shown}: byte {fault.start} is not UTF-8, allowed is UTF-8 text.") from fault

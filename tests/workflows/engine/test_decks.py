@@ -194,6 +194,7 @@ def test_words_are_names_and_values(words, fault):
             "1\n2\n{{ a.b }}\n",
             r"templates/part\.in\.j2, line 3: UndefinedError: '[^.]*'\.",
         ),
+        ("1\n{% if a %}\n", "", r"templates/case\.in\.j2, line 2: Unexpected end of template\. .*[^.]\."),
         ("1\n2\n{% for x in a %}{% endfor %}", "", r"templates/case\.in\.j2, line 3: TypeError: [^.]*\."),
     ],
 )
@@ -203,8 +204,8 @@ def test_a_fault_while_a_template_is_filled_has_its_line(tmp_path, monkeypatch, 
     (tmp_path / "templates").mkdir()
     (tmp_path / "templates/case.in.j2").write_text(text)
     (tmp_path / "templates/part.in.j2").write_text(part)
-    used = template_variables("case")
     with pytest.raises(DeckError) as fault:
+        used = template_variables("case")
         render("case", {name: value for name, value in {"a": 3, "b": 0}.items() if name in used})
     assert re.fullmatch(said, str(fault.value))
 

@@ -61,7 +61,8 @@ def part_surface(number: int, part: Part, folder: Path, meshed: Callable[..., Ow
         check_solid(part, fault.names)
         raise
     except (ValueError, OSError) as fault:
-        raise ConfigError(f"{name}: {fault}.") from fault
+        words = str(fault).removesuffix(".")
+        raise ConfigError(f"{name}: {words}.") from fault
     surface = found.surface
     for repair in found.repairs:
         if repair.repair.startswith(TOLD):
