@@ -116,6 +116,19 @@ def _is_setting(run: CheckedRun, key: str) -> bool:
     return key not in run.row.values
 
 
+def is_stronger(run: CheckedRun, key: str, other: str) -> bool:
+    """Return whether a setting stands in a stronger layer than another one, as on the command line: it is at fault."""
+    return _strength(run, key) > _strength(run, other)
+
+
+def _strength(run: CheckedRun, key: str) -> int:
+    """Return the number of the layer that a setting stands in, of the row's own the highest."""
+    if key in run.columns:
+        return len(run.layers)
+    path = tuple(key.split("."))
+    return max((number for number, layer in enumerate(run.layers) if layer.holds(path)), default=-1)
+
+
 def millimetres(metres: float) -> str:
     return f"{metres * 1000.0:.6g} mm"
 

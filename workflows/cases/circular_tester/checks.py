@@ -16,6 +16,17 @@ from bulkwear.workflows.cases.circular_tester.decks import (
     half_width,
     mean_radius,
 )
+from bulkwear.workflows.cases.circular_tester.room import (
+    LEVEL_QUARTER_DIAMETERS,
+    PUSHED_DIAMETERS,
+    SIDE_DIAMETERS,
+    ends,
+    flatter,
+    needed_over,
+    needed_under,
+    shallower,
+    smaller_scale,
+)
 from bulkwear.workflows.config.patterns import dimension_columns
 from bulkwear.workflows.config.run_checks import (
     CheckedRun,
@@ -23,6 +34,7 @@ from bulkwear.workflows.config.run_checks import (
     deeper_than,
     element_resolves_pattern,
     element_resolves_sample,
+    is_stronger,
     millimetres,
     pattern_fits,
     physical_modulus_known,
@@ -32,14 +44,7 @@ from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
 VOLUME, VARIED = "volume", "varied"  # series of the design
 ALONE = ("row", "surface")  # columns in which the rows of a pair differ
-LEAST_LAYERS = 3.0  # of particles over the sample and under it: fewer are no bed
-# -, largest diameters in the quarter of a channel whose level is looked at: shorter ones often hold no particle.
-LEVEL_QUARTER_DIAMETERS = 2.0
 LEVEL_DIAMETERS = 0.5  # -, of bed and consolidator apart, in median diameters: the plate cuts no layer off, misses none
-# -, room beside the sample and under it, in largest diameters: particles pass there without a jam.
-SIDE_DIAMETERS = 2.0
-# -, rise of the consolidator, in largest diameters: it pushes particles that lie on the bed by their middle.
-PUSHED_DIAMETERS = 0.5
 # -, how far the chords of a ring's walls lie inside their circle, in largest diameters: at 0.1 poured particles, whose
 # centres keep 0.6 off, begin to touch them; at 0.36 they were kicked, at 0.46 lost.
 CHORD_DIAMETERS = 0.35
@@ -57,6 +62,8 @@ def radii_in_order(run: CheckedRun) -> Fault | None:
     tester = run.parameters["tester"]
     if tester["outer_radius_m"] > tester["inner_radius_m"]:
         return None
+    if is_stronger(run, "tester.inner_radius_mm", "tester.outer_radius_mm"):
+        return "tester.inner_radius_mm", f"below {millimetres(tester['outer_radius_m'])}, tester.outer_radius_mm"
     return "tester.outer_radius_mm", f"above {millimetres(tester['inner_radius_m'])}, tester.inner_radius_mm"
 
 
@@ -78,7 +85,7 @@ def sample_between_walls(run: CheckedRun) -> Fault | None:
     return (
         "sample.width_mm",
         f"at most {millimetres(largest)}, so that two of the largest particles ({millimetres(0.5 * room)}) pass "
-        "between sample and wall",
+        f"between sample and wall{smaller_scale(run)}",
     )
 
 
@@ -91,7 +98,8 @@ def sample_in_channel(run: CheckedRun) -> Fault | None:
         return None
     angle = _rounded_up(math.degrees(max(twice, quarters) / mean_radius(tester)))
     reason = "twice the length of sample and consolidator" if twice >= quarters else "eight of the largest particles"
-    return "tester.channel_deg", f"at least {angle:g} degrees, {reason}"
+    scale = "" if twice >= quarters else smaller_scale(run)
+    return "tester.channel_deg", f"at least {angle:g} degrees, {reason}{scale}"
 
 
 def _rounded_up(value: float) -> float:
@@ -166,37 +174,36 @@ def consolidator_in_ring(run: CheckedRun) -> Fault | None:
     )
 
 
-def _ends(run: CheckedRun, above: float, below: float) -> tuple[float, float]:
-    """Return the lowest and the highest point (m over its middle) of the inclined sample between two of its planes.
-
-    above, below: m, of the planes over and under the middle of its top
-    """
-    incline = run.parameters["tester"]["incline_rad"]
-    rise = 0.5 * run.parameters["sample"]["length_m"] * abs(math.sin(incline))
-    return -rise - below * math.cos(incline), rise + above * math.cos(incline)
-
-
 def enough_layers_over(run: CheckedRun) -> Fault | None:
     """The bed over the sample's higher end has three layers of particles."""
-    _, highest = _ends(run, 0.0, 0.0)
-    least = LEAST_LAYERS * run.parameters["particle"]["median_diameter_m"] + highest
+    _, highest = ends(run, 0.0, 0.0)
+    least = needed_over(run) + highest
     if reaches(run.parameters["tester"]["depth_m"], least):
         return None
-    return "tester.depth_mm", f"at least {millimetres(least)}, three layers of particles over the sample's higher end"
+    return "tester.depth_mm", (
+        f"at least {millimetres(least)}, three layers of particles over the sample's higher end"
+        f"{flatter(run)}{smaller_scale(run)}"
+    )
 
 
 def enough_layers_under(run: CheckedRun) -> Fault | None:
     """The bed under the sample's lower end has three layers of particles, and room for two of the largest, so that it
     flows there too.
     """
-    tester, sample, particle = (run.parameters[name] for name in ("tester", "sample", "particle"))
-    lowest, _ = _ends(run, 0.0, sample["thickness_m"])
-    layers, pair = LEAST_LAYERS * particle["median_diameter_m"], SIDE_DIAMETERS * max(particle["diameters_m"])
-    least = tester["depth_m"] - lowest + max(layers, pair)
+    tester, sample = run.parameters["tester"], run.parameters["sample"]
+    lowest, _ = ends(run, 0.0, sample["thickness_m"])
+    least = tester["depth_m"] - lowest + needed_under(run)
     if reaches(tester["bed_height_m"], least):
         return None
-    what = "three layers of particles" if layers >= pair else "two of the largest particles"
-    return "tester.bed_height_mm", f"at least {millimetres(least)}, {what} under the sample's lower end"
+    what = "three layers of particles" if needed_over(run) >= needed_under(run) else "two of the largest particles"
+    apart = LEVEL_DIAMETERS * run.parameters["particle"]["median_diameter_m"]
+    level = (
+        "" if reaches(tester["consolidator_level_m"], least - apart) else ", and tester.consolidator_level_mm with it"
+    )
+    return "tester.bed_height_mm", (
+        f"at least {millimetres(least)}{level}, {what} under the sample's lower end"
+        f"{shallower(run)}{flatter(run)}{smaller_scale(run)}"
+    )
 
 
 def consolidator_pushes(run: CheckedRun) -> Fault | None:
@@ -204,13 +211,15 @@ def consolidator_pushes(run: CheckedRun) -> Fault | None:
     least = PUSHED_DIAMETERS * max(run.parameters["particle"]["diameters_m"])
     if reaches(run.parameters["tester"]["consolidator_rise_m"], least):
         return None
-    return "tester.consolidator_rise_mm", f"at least {millimetres(least)}, the radius of the largest particle"
+    return "tester.consolidator_rise_mm", (
+        f"at least {millimetres(least)}, the radius of the largest particle{smaller_scale(run)}"
+    )
 
 
 def consolidator_on_bed(run: CheckedRun) -> Fault | None:
     """The consolidator levels above the highest point of the sample, and of the particles that lie on it."""
     tester = run.parameters["tester"]
-    _, highest = _ends(run, run.parameters["derived"]["headroom_m"], 0.0)
+    _, highest = ends(run, run.parameters["derived"]["headroom_m"], 0.0)
     least = tester["bed_height_m"] + highest - tester["consolidator_level_m"]
     if tester["depth_m"] > least:
         return None

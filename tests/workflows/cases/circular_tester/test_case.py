@@ -291,7 +291,7 @@ def test_the_largest_particle_passes_under_the_sample():
     key, allowed = enough_layers_under(CheckedRun((), {}, Layer("row", {}), parameters))
     least = 35 + 20 * math.sin(math.radians(2)) + 4 * math.cos(math.radians(2)) + 2 * 20
     assert key == "tester.bed_height_mm"
-    assert allowed == f"at least {least:.6g} mm, two of the largest particles under the sample's lower end"
+    assert allowed.startswith(f"at least {least:.6g} mm, and tester.consolidator_level_mm with it, two of the largest ")
 
 
 def test_particles_are_poured_into_the_trough():
@@ -410,3 +410,53 @@ def test_work_is_that_of_beds_and_runs():
         assert surface_triangles(parameters) == pytest.approx(len(mesh.triangles), rel=TRIANGLES)
     assert placed(mesh, np.eye(3), np.zeros(3)).points == pytest.approx(mesh.points)
     assert TINY["sample"]["width_mm"] == 40
+
+
+WAYS = {  # out of a refusal: the setting, and the bound that a sentence names
+    "particle_scale": r"particle_scale of at most ([\d.]+\d)",
+    "tester.depth_mm": r"tester\.depth_mm of at most ([\d.]+) mm",
+    "tester.incline_deg": r"tester\.incline_deg of \S+ to ([\d.]+\d)",
+}
+
+
+@pytest.mark.parametrize(
+    ("given", "refused", "ways"),
+    [
+        ({"particle_scale": 8}, "tester.bed_height_mm", ["particle_scale", "tester.depth_mm"]),
+        ({"particle_scale": 10}, "sample.width_mm", ["particle_scale"]),
+        ({"particle_scale": 9, "tester": {"shape": "ring"}}, "sample.width_mm", ["particle_scale"]),
+        ({"tester": {"incline_deg": 5}}, "tester.bed_height_mm", [*WAYS]),
+        ({"tester": {"incline_deg": -8}}, "tester.bed_height_mm", [*WAYS]),
+        ({"tester": {"depth_mm": 100}}, "tester.bed_height_mm", ["particle_scale", "tester.depth_mm"]),
+        ({"tester": {"depth_mm": 40}}, "tester.depth_mm", ["particle_scale"]),
+    ],
+)
+def test_a_refusal_names_what_made_it_and_a_bound_that_is_allowed(given, refused, ways):
+    """Scale, depth or tilt may be at fault as well as the length that does not suffice; each bound is enough."""
+    with pytest.raises(ConfigError, match=f"{refused} is ") as fault:
+        load_study("circular_tester", overrides=given)
+    found = {key: re.search(words, str(fault.value)) for key, words in WAYS.items()}
+    assert [key for key, bound in found.items() if bound] == ways
+    for key in ways:
+        *block, name = key.split(".")
+        bound = {name: float(found[key][1])}
+        way = {"tester": given.get("tester", {}) | bound} if block else bound
+        assert load_study("circular_tester", overrides=given | way).runs
+
+
+def test_a_bed_that_has_to_be_higher_takes_the_consolidator_with_it():
+    """Both are in one refusal, and are allowed together."""
+    with pytest.raises(ConfigError, match=r"at least \S+ mm, and tester.consolidator_level_mm with it, three") as fault:
+        load_study("circular_tester", overrides={"particle_scale": 8})
+    least = float(re.search(r"at least (\S+) mm", str(fault.value))[1])
+    tester = {"bed_height_mm": least, "consolidator_level_mm": least}
+    assert load_study("circular_tester", overrides={"particle_scale": 8, "tester": tester}).runs
+
+
+def test_radii_out_of_order_are_told_where_they_were_given():
+    """An inner radius of the command line is at fault, not the outer one of the defaults."""
+    with pytest.raises(ConfigError) as fault:
+        load_study("circular_tester", overrides={"tester": {"inner_radius_mm": 600}})
+    assert str(fault.value) == (
+        "command line: tester.inner_radius_mm is 600 for row plain, allowed is below 500 mm, tester.outer_radius_mm."
+    )
