@@ -234,6 +234,7 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
         _rows_to_confirm(sources, confirms, project) if confirms else _design_rows(sources, fidelity, project, wanted)
     )
     checked_runs = partial(_checked_runs, sources, layers, settings, materials)
+    _check_heard(sources, written)
     digest = search_digest(settings, written)
     written = _placed(layers, with_search, written, settings, head, checked_runs, project.folder / "results" / name)
     designed = _packings(sources, layers, settings, written)
@@ -264,6 +265,17 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
     )
     _check_own_code(study, layers)
     return study
+
+
+def _check_heard(sources: Sources, rows: list[Layer]) -> None:
+    """Raise ConfigError for a setting of the command line that every row of the design has its own of."""
+    for setting, column in setting_columns(load_schema(f"cases/{sources.case.name}/design")).items():
+        path = tuple(setting.split("."))
+        if sources.command.holds(path) and rows and all(column in row.values for row in rows):
+            raise ConfigError(
+                f"{sources.command.where(path)}: {setting} changes nothing, for every row of {rows[0].source} has its"
+                f" own {column}; allowed is to choose among them ({ROWS}), or another design."
+            )
 
 
 def _told(

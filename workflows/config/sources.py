@@ -24,7 +24,7 @@ from bulkwear.workflows.config.layers import (
     read_yaml,
 )
 from bulkwear.workflows.config.schema import case_schema, coerce_numbers, joined, load_schema, without_required
-from bulkwear.workflows.config.validation import check_alternatives, check_layer, unknown_name
+from bulkwear.workflows.config.validation import check_alternatives, check_layer, own_columns, unknown_name
 from bulkwear.workflows.engine.case import DEFAULT_CASE, Case
 from bulkwear.workflows.engine.cases import case_folders, case_names, find_case
 from bulkwear.workflows.engine.project import Project, current_project
@@ -131,12 +131,13 @@ def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) 
     allowed = of_study["properties"] | partial["properties"]
     if "case" not in named.values:
         _check_case_meant(sources.study, case.name, allowed)
-    check_layer(sources.study, {**of_study, "properties": allowed})
+    columns = own_columns(load_schema(f"cases/{case.name}/design"))
+    check_layer(sources.study, {**of_study, "properties": allowed}, columns)
     offered = {k: v for k, v in partial["properties"].items() if k != "fidelity"}
     within_block = {**partial, "properties": offered | {DESIGN: of_study["properties"][DESIGN]}}
     for fidelity in sources.study.values.get("fidelities", {}):
-        check_layer(sources.block(fidelity), within_block)
-    check_layer(sources.command, partial)
+        check_layer(sources.block(fidelity), within_block, columns)
+    check_layer(sources.command, partial, columns)
     check_alternatives(of_case[0], case.alternatives, required=True)
     for layer in (*sources.defaults, *sources.partial_layers):
         for alternatives in alternatives_of(case, layer.values):

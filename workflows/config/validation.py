@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -68,10 +68,13 @@ LONGEST_VALUE = 60  # characters of a value that a message shows
 ALIKE, ALIKE_PATHS = 0.6, 0.7  # -, least likeness of a key and of its whole path to a known one that is named instead
 
 
-def check_layer(layer: Layer, schema: dict[str, Any]) -> None:
-    """Raise ConfigError for the first fault of a layer against a schema by lines, missing keys last."""
+def check_layer(layer: Layer, schema: dict[str, Any], columns: Collection[str] = ()) -> None:
+    """Raise ConfigError for the first fault of a layer against a schema by lines, missing keys last.
+
+    columns: of the design table that stand for no setting: one that an unknown key means is named
+    """
     errors = list(validator()(schema).iter_errors(layer.values))
-    faults = [(path, said, False) for path, said in _faults(errors, schema)]
+    faults = [(path, said, False) for path, said in _faults(errors, schema, columns)]
     faults += [(path, said, True) for path, said in _missing(errors)]
     if faults:
         path, said, _ = min(faults, key=lambda item: (item[2], layer.line(item[0]), dotted(item[0])))
@@ -89,15 +92,36 @@ def check_alternatives(layer: Layer, alternatives: Sequence[KeyPath], required: 
         raise ConfigError(f"{where}: {names} {found}, allowed is one of them.")
 
 
-def _faults(errors: Sequence[ValidationError], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, Callable[[], str]]]:
+def _faults(
+    errors: Sequence[ValidationError], schema: dict[str, Any], columns: Collection[str]
+) -> Iterator[tuple[KeyPath, Callable[[], str]]]:
     """Yield (key path, what makes the sentence without its end) for every value that is wrong and every unknown key."""
     for error in errors:
         path = tuple(error.absolute_path)
         if error.validator == "additionalProperties":
             for key in [key for key in error.instance if key not in error.schema.get("properties", {})]:
-                yield (*path, key), partial(unknown_key, (*path, key), schema, found=show(error.instance[key]))
+                found = show(error.instance[key])
+                if column := next((name for name in columns if name in _columns_meant(path, key)), None):
+                    yield (*path, key), partial(_is_column, (*path, key), found, column)
+                else:
+                    yield (*path, key), partial(unknown_key, (*path, key), schema, found=found)
         elif error.validator != "required":
             yield path, partial(wrong_value, path, error.instance, error.schema)
+
+
+def own_columns(schema: dict[str, Any]) -> list[str]:
+    """Return the columns of numbers of a design table that stand for no setting; schema: of its rows."""
+    return [name for (name,), inner in leaves(schema) if inner.get("type") in NUMBERS and "x-setting" not in inner]
+
+
+def _columns_meant(path: KeyPath, key: Any) -> tuple[str, ...]:
+    """Return the names of columns that a key of a block may mean: its own, and its own after its block's."""
+    return (str(key), f"{path[-1]}_{key}") if path else (str(key),)
+
+
+def _is_column(path: KeyPath, found: str, column: str) -> str:
+    """Return the fault of a key that is a column of the design table."""
+    return f"{dotted(path)} ({found}) is no known key, it is the column {column} of the study's design table"
 
 
 def _missing(errors: Sequence[ValidationError]) -> Iterator[tuple[KeyPath, Callable[[], str]]]:

@@ -778,3 +778,30 @@ def test_the_first_fault_of_a_file_is_reported(config):
 def test_the_page_of_keys_is_up_to_date(repository):
     """config/README.md is what `python -m bulkwear.workflows.config.readme` writes."""
     assert (repository / "config" / "README.md").read_text(encoding="utf-8") == readme()
+
+
+@pytest.mark.parametrize(
+    ("given", "key", "column"),
+    [
+        ({"bed": {"thickness_mm": 46}}, "bed.thickness_mm (46)", "bed_thickness_mm"),
+        ({"sliding": {"velocity_m_per_s": 1}}, "sliding.velocity_m_per_s (1)", "velocity_m_per_s"),
+        ({"bed_thickness_mm": 46}, "bed_thickness_mm (46)", "bed_thickness_mm"),
+    ],
+)
+def test_a_key_that_is_a_column_of_the_design_is_told(given, key, column):
+    """What the design table gives is no setting; the refusal names the column."""
+    with pytest.raises(ConfigError) as fault:
+        load_study("demo", overrides=given)
+    said = f"{key} is no known key, it is the column {column} of the study's design table."
+    assert str(fault.value) == f"command line: {said}"
+
+
+def test_a_setting_that_every_row_has_its_own_of_is_refused_on_the_command_line():
+    """It would change nothing; where a row lacks the column, it does."""
+    with pytest.raises(ConfigError) as fault:
+        load_study("particle_size", overrides={"particle_scale": 20})
+    assert str(fault.value) == (
+        "command line: particle_scale changes nothing, for every row of config/designs/particle_size.csv has its own"
+        " particle_scale; allowed is to choose among them (rows), or another design."
+    )
+    assert load_study("circular_tester", overrides={"particle_scale": 5}).runs

@@ -11,6 +11,7 @@ from tests.support.tiny import tiny_study
 
 SMALL_SAMPLE = {"width_mm": 5, "element_size_mm": 1, "skirt_slope_deg": 20}
 THIN_BED = {"allow_thin_bed": True}
+WINDOW = {"ends": "window", "exchange_mm": 60, "ahead_mm": 60, "behind_mm": 60}
 ROUNDED = 0.001  # mm, more than what a sentence leaves out of a length
 
 
@@ -49,7 +50,9 @@ def test_clumps_need_a_time_step_of_run_in():
         ({"sample": {"width_mm": 55, "skirt_slope_deg": 1.3}}, "sample", "width_mm", "at most"),
         ({"bed": {"ahead_mm": 2}, "sample": {"skirt_slope_deg": 1.3}}, "bed", "ahead_mm", "at least"),
         ({"sample": {"skirt_radius_mm": 10}}, "sample", "skirt_radius_mm", "at least"),
-        ({"bed": {"ends": "window", "exchange_mm": 1}}, "bed", "exchange_mm", "at least"),
+        ({"bed": {**WINDOW, "exchange_mm": 1}}, "bed", "exchange_mm", "at least"),
+        ({"bed": {**WINDOW, "ahead_mm": 20}}, "bed", "ahead_mm", "at least"),
+        ({"bed": {**WINDOW, "behind_mm": 30}}, "bed", "behind_mm", "at least"),
         ({"bed": {"ends": "periodic", "width_mm": 61}}, "bed", "ahead_mm", "at least"),
     ],
 )

@@ -82,7 +82,7 @@ def test_ranks_share_a_bed_as_its_geometry_wants(ends, grid):
     """A bed that travels through its domain is split across; one that fills it is the solver's to split. All decks of a
     run say the same, and none knows how many ranks there will be.
     """
-    study = tiny_study(bed={"ends": ends, "ahead_mm": 60, "exchange_mm": 60})
+    study = tiny_study(bed={"ends": ends, "ahead_mm": 60, "behind_mm": 60, "exchange_mm": 60})
     parameters, bed = run_and_bed(study)
     texts = [
         render("settled_bed", settled_bed(bed)),

@@ -33,7 +33,7 @@ from tests.support.tiny import tiny_chain, tiny_study
 
 WINDOW = {
     "particle_scale": 6,
-    "bed": {"ends": "window", "exchange_mm": 40, "ahead_mm": 160, "behind_mm": 40, "allow_thin_bed": True},
+    "bed": {"ends": "window", "exchange_mm": 40, "ahead_mm": 200, "behind_mm": 60, "allow_thin_bed": True},
     "sliding": {"run_in_mm": 60, "travel_mm": 120, "cycles": 2},
     "solver": {"picture_interval_mm": 5},
 }
@@ -103,20 +103,20 @@ def test_decks_continue_each_others_travel():
 
 
 def test_the_window_is_as_long_whatever_the_travel():
-    """Behind 40, sample 40, ahead 160, exchange 40 mm, a held strip of two of the largest particles and room of one
+    """Behind 60, sample 40, ahead 200, exchange 40 mm, a held strip of two of the largest particles and room of one
     and the neighbour skin off the wake; runs of all travels and velocities share the bed."""
     largest, smallest = 6 * 1.2 * 2.65e-3, 6 * 0.8 * 2.65e-3
-    expected = 0.04 + 0.04 + 0.16 + 0.04 + 3.0 * largest + 0.5 * SKIN_OVER_RADIUS * smallest
+    expected = 0.06 + 0.04 + 0.2 + 0.04 + 3.0 * largest + 0.5 * SKIN_OVER_RADIUS * smallest
     studies = [window_study(sliding={"run_in_mm": 60, "travel_mm": travel, "cycles": 2}) for travel in (120, 12000)]
     for study in studies:
         derived = study.run("R9_convex").parameters["derived"]
         assert derived["bed_length_m"] == pytest.approx(expected, rel=1e-9)
-        assert derived["bed_start_m"] + derived["bed_length_m"] == pytest.approx(0.02 + 0.04)
+        assert derived["bed_start_m"] + derived["bed_length_m"] == pytest.approx(0.02 + 0.06)
         assert derived["bed_travel_m"] == 0.0
     assert studies[0].beds == studies[1].beds
     face = decks(studies[0])[0][0]["face_m"]
     strip, clearance = window_lengths(studies[0].run("R9_convex").parameters["particle"])
-    assert -0.02 - face - strip - EXCHANGE == pytest.approx(0.16)
+    assert -0.02 - face - strip - EXCHANGE == pytest.approx(0.2)
     assert face - studies[0].beds["bed_R5"]["start_m"] == pytest.approx(clearance)
 
 
