@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from bulkwear.workflows.config.chosen import ROWS
 from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, display_name, merge, overridden, read_csv_rows
 from bulkwear.workflows.config.optimise import OPTIMISE
 from bulkwear.workflows.config.schema import case_schema, leaves, subschema
@@ -40,6 +41,17 @@ def as_settings(row: Layer, columns: dict[str, str]) -> Layer:
             value = {key: value}
         values = merge(values, value)
     return Layer(row.source, values, {(): row.line(())}, row.block)
+
+
+def check_heard(command: Layer, rows: Sequence[Layer], schema: dict[str, Any]) -> None:
+    """Raise ConfigError for a setting of the command line that every row of a design has its own of."""
+    for setting, column in setting_columns(schema).items():
+        path = tuple(setting.split("."))
+        if command.holds(path) and rows and all(column in row.values for row in rows):
+            raise ConfigError(
+                f"{command.where(path)}: {setting} changes nothing, for every row of {rows[0].source} has its own"
+                f" {column}; allowed is to choose among them ({ROWS}), or another design."
+            )
 
 
 def with_row(settings: dict[str, Any], row: Layer, alternatives: Sequence[Sequence[KeyPath]]) -> dict[str, Any]:

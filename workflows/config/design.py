@@ -23,7 +23,7 @@ from bulkwear.workflows.config.coefficients import (
     coefficient_columns,
     with_coefficients,
 )
-from bulkwear.workflows.config.columns import as_settings, opened, row_overrides, setting_columns, with_row
+from bulkwear.workflows.config.columns import as_settings, check_heard, opened, row_overrides, setting_columns, with_row
 from bulkwear.workflows.config.deck_checks import check_own_words, template_faults_told
 from bulkwear.workflows.config.factors import FACTORS, can_tell, factors_of
 from bulkwear.workflows.config.law_settings import check_law, check_volume
@@ -234,7 +234,6 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
         _rows_to_confirm(sources, confirms, project) if confirms else _design_rows(sources, fidelity, project, wanted)
     )
     checked_runs = partial(_checked_runs, sources, layers, settings, materials)
-    _check_heard(sources, written)
     digest = search_digest(settings, written)
     written = _placed(layers, with_search, written, settings, head, checked_runs, project.folder / "results" / name)
     designed = _packings(sources, layers, settings, written)
@@ -265,17 +264,6 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
     )
     _check_own_code(study, layers)
     return study
-
-
-def _check_heard(sources: Sources, rows: list[Layer]) -> None:
-    """Raise ConfigError for a setting of the command line that every row of the design has its own of."""
-    for setting, column in setting_columns(load_schema(f"cases/{sources.case.name}/design")).items():
-        path = tuple(setting.split("."))
-        if sources.command.holds(path) and rows and all(column in row.values for row in rows):
-            raise ConfigError(
-                f"{sources.command.where(path)}: {setting} changes nothing, for every row of {rows[0].source} has its"
-                f" own {column}; allowed is to choose among them ({ROWS}), or another design."
-            )
 
 
 def _told(
@@ -331,6 +319,7 @@ def _design_rows(sources: Sources, fidelity: str, project: Project, chosen: list
     rows = read_design(path, project.folder, schema, partial(is_wanted, chosen=chosen))
     if not chosen and (fault := sources.case.design_fault([row.values for row in rows])):
         raise ConfigError(f"{display_name(path, project.folder)}: {fault}.")
+    check_heard(sources.command, rows, schema)
     return rows
 
 
