@@ -119,7 +119,8 @@ def solved(commit: str, sample: Sample, folder: Path) -> Path:
 
 def _call(command: Sequence[str], where: Path) -> None:
     program = Path(where, ".venv/bin").resolve()
-    environment = {**os.environ, "PATH": os.pathsep.join([str(program), os.environ["PATH"]])}
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}  # it may lead to other code
+    environment = {**kept, "PATH": os.pathsep.join([str(program), os.environ["PATH"]])}
     done = subprocess.run(command, cwd=where, stdout=sys.stderr, env=environment)
     if done.returncode != 0:
         raise VersionError(f"{where}: {' '.join(command)} ended with exit code {done.returncode}.")
