@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.flow.bulk_test import RESPONSES
@@ -18,6 +19,7 @@ ALL_RESPONSES = tuple(name for responses in RESPONSES.values() for name in respo
 PLATE = "plate_sliding_friction"  # column, the coefficient (-) of particles and plate of a wall shear test
 (WALL_ANGLE,) = RESPONSES["wall_shear"]  # of which the source prints nothing
 NO_REST = "no_rest"  # column with the words of a test that has no responses
+TWO = 2  # pairs, between which a response changes
 ENOUGH = 3  # packings that two models share, to be compared one by one
 NEAREST, APART, ALIKE, OPEN = "nearest", "yes", "no", "unknown"  # whether a model is told from the nearest one
 
@@ -118,6 +120,25 @@ def nearest(table: pd.DataFrame, response: str) -> str:
     )
 
 
+def trend(found: pd.DataFrame, response: str) -> list[str]:
+    """Return in a sentence by how much a response changes from one of two pairs to the other, in the source and under
+    each model; nothing where there are more pairs, or one.
+
+    found: of `of_shared_pairs`
+    """
+    of = found[found["response"] == response]
+    means = of.groupby(["pair", "published"])[["ours"]].mean().reset_index().sort_values("published")
+    if len(means) != TWO:
+        return []
+    (first, second), change = means["pair"], float(np.diff(means["published"])[0])
+    by_model = of.groupby(["model", "pair"])["ours"].mean().unstack()
+    ours = by_model[second] - by_model[first]
+    told = ", ".join(f"{model} {value:+.1f}" for model, value in ours.items())
+    return [
+        f"{response_name(response)}: from the pair {first} to {second} the source changes by {change:+.1f}; {told}."
+    ]
+
+
 def restless(runs: pd.DataFrame) -> list[str]:
     """Return a sentence for each model and test of which packings never came to rest."""
     if NO_REST not in runs:
@@ -167,11 +188,13 @@ def results_page(runs: pd.DataFrame, published: pd.DataFrame) -> str:
 
 def beside_the_source(found: pd.DataFrame, further: Sequence[str]) -> list[str]:
     """Return the parts of the page on what the source prints; found: of `differences`; further: sentences."""
-    table = summary(of_shared_pairs(found))
+    shared = of_shared_pairs(found)
+    table = summary(shared)
     responses = list(dict.fromkeys(table["response"]))
+    trends = [sentence for response in responses for sentence in trend(shared, response)]
     parts = [
         "## Nearest to what the source simulated",
-        "\n".join(map(bullet, (*(nearest(table, response) for response in responses), *further))),
+        "\n".join(map(bullet, (*(nearest(table, response) for response in responses), *trends, *further))),
         prose(
             "The source simulated these pairs of frictions itself (Yan 2022, Tables 3.3, 3.5 and 3.6), with a code of"
             " whose rolling model it says no more than type A. The particles here are four times as large, and the"

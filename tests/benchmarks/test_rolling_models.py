@@ -30,6 +30,7 @@ from benchmarks.rolling_page import (
     restless,
     results_page,
     summary,
+    trend,
     wall_friction,
 )
 from bulkwear.postproc.flow.bulk_test import Measurement
@@ -265,3 +266,16 @@ def test_wall_friction_stands_beside_the_coefficient(published, tmp_path):
     alone = publish(tmp_path, walls, published)
     assert "by 3 degrees at most" in alone and "Nearest" not in alone
     assert not (tmp_path / "rolling_models.png").exists()
+
+
+def test_between_two_pairs_the_change_of_each_model_stands_beside_the_sources(published):
+    """Of two pairs that all models have; of more there is no sentence."""
+    pairs = {"first_1": 35.5, "first_4": 38.8}  # degrees, as published
+    rows = [
+        {"model": model, "pair": pair, "packing": 1, "draw_down_shear_angle_deg": 30.0 + step * (pair == "first_4")}
+        for model, step in (("cdt", 2.0), ("rvd", -1.0))
+        for pair in pairs
+    ]
+    (said,) = trend(differences(pd.DataFrame(rows), published), "draw_down_shear_angle_deg")
+    assert "from the pair first_1 to first_4 the source changes by +3.3; cdt +2.0, rvd -1.0." in said
+    assert trend(differences(runs_off_by(published), published), "draw_down_shear_angle_deg") == []
