@@ -2,8 +2,10 @@
 
 import re
 
+import pandas as pd
 import yaml
 
+from benchmarks.rolling_page import MODELS
 from bulkwear.workflows.engine.beds import (
     DENSITY_TOLERANCE,
     LEVEL_TOLERANCE,
@@ -14,7 +16,7 @@ from bulkwear.workflows.engine.beds import (
     over_asked_density,
 )
 from bulkwear.workflows.report.time_step import SHOWN
-from tests import REPOSITORY
+from tests import PUBLISHED, REPOSITORY
 from tests.support.told import rows, table, told
 
 GRAVEL = yaml.safe_load((REPOSITORY / "config/materials.yaml").read_text(encoding="utf-8"))["particles"]["river_gravel"]
@@ -149,11 +151,22 @@ def test_which_rolling_model_is_nearest_and_when_a_layer_flows():
     """Angles below the source's with their intervals, slopes at which a layer flows, and its creep before."""
     page, results = told("rolling_friction.md"), "rolling_models_results.md"
     found = rows(results, "response", "model", "pairs").set_index(["response", "model"])
-    below = found.loc["Shear angle, shear box (°)"][["mean difference", "low", "high"]].astype(float)
-    own, epsd2, cdt, rvd = (below.loc[each] for each in ("own spin", "epsd2", "cdt", "rvd"))
-    assert f"stays {-own.iloc[0]:.1f} degrees below the source's angle in the shear box" in page
-    assert f"to {own.iloc[2]:.1f} above), `epsd2` {-epsd2.iloc[0]:.1f} ({-epsd2.iloc[2]:.1f} to" in page
-    assert f"`cdt` {-cdt.iloc[0]:.1f} and `rvd` {-rvd.iloc[0]:.0f} below, of two packings" in page
+    off = found.loc["Shear angle, shear box (°)", "root mean square"].astype(float).sort_values()
+    (nearest, least), *others = off.items()
+    words = ", ".join(f"`{model.replace(' ', '_')}` ({value:.1f})" for model, value in others)
+    assert f"`{nearest}` is nearest, off by {least:.1f} degrees (root mean square), then" in page
+    assert f"then {' and '.join(words.rsplit(', ', 1))};" in page
+    assert (found.loc["Shear angle, shear box (°)", "told from nearest"].drop(nearest) == "no").all()
+    changes = dict(re.findall(r"(\w+) ([+-]\d+\.\d)", re.search(r"the source changes by [^*]*", told(results))[0]))
+    assert f"rises by {float(changes['by']):.1f} degrees, under `rvd` by {float(changes['rvd']):.1f}," in page
+    assert f"under `own_spin` it falls by {-float(changes['own_spin']):.1f}:" in page
+    assert max(float(changes[model]) for model in MODELS) < float(changes["by"])
+    angles = (
+        rows(results, "pair", "published", "cdt").set_index("pair").loc["calibrated"].drop("published").astype(float)
+    )
+    measured = pd.read_csv(PUBLISHED / "gravel_tests.csv").set_index("response")["value"]
+    short = measured["shear_angle_deg"] - angles
+    assert f"by {short.min():.1f} to {short.max():.1f} degrees in the mean of two packings" in told("decisions.md")
     layers = table("tilted_bed.csv").groupby("model")[["flow_angle_deg", "creep_mm_per_s"]].mean()
     flow, creep = layers["flow_angle_deg"].round(), layers["creep_mm_per_s"]
     assert flow["epsd2"] == flow["rvd"]
@@ -190,8 +203,9 @@ def test_what_the_calibrations_pairs_give():
     assert f"a band at sliding friction {low:.2f} to {high:.2f} with rolling friction anywhere" in page
     assert f"from {rolling_low:.2f} to {rolling_high:.2f}, which is told" in page
     angles = rows("rolling_models_results.md", "pair", "published", "cdt").iloc[0]
-    assert f"gives {angles['cdt']}° under `cdt` (two packings), {angles['epsd2']}° under `epsd2`" in page
-    assert f"where two packings of the calibration below give {found.loc[('calibrated', box), 'simulated']}°" in page
+    told_of = [f"{angles[model.replace('_', ' ')]}° under `{model}`" for model in ("cdt", "epsd2", "rvd", "own_spin")]
+    assert f"gives {', '.join(told_of[:-1])} and {told_of[-1]}, two packings each" in page
+    assert f"where two of the calibration below give {found.loc[('calibrated', box), 'simulated']}°" in page
 
 
 def test_what_the_best_pattern_wears():
