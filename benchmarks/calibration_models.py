@@ -87,17 +87,17 @@ def publish(output: Path, table: pd.DataFrame) -> str:
     failed = table.set_index(MODEL)[NO_REST].dropna().to_dict() if NO_REST in table else {}
     page = results_page(done, failed)
     (output / PAGE).write_text(page, encoding="utf-8")
-    save(families(done, remarks_of(table, done)), output / FIGURE)
+    save(families(done, remarks_of(done)), output / FIGURE)
     save_small(output / FIGURE, output / FIGURE)
     return page
 
 
-def remarks_of(table: pd.DataFrame, done: Mapping[str, Calibrated]) -> list[str]:
+def remarks_of(done: Mapping[str, Calibrated]) -> list[str]:
     """Return what stands below the figure."""
     scale = next(iter(done.values())).parameters["particle"]["scale"]
     return [
         f"study calibration at {FIDELITY} fidelity: shear box, particles at scale {scale:g}; coefficients for the full"
-        f" radius; {len(table)} simulations",
+        f" radius; {sum(len(each.everything) for each in done.values())} simulations",
         f"made by benchmarks/calibration_models.py, {date.today():%Y-%m-%d}",
     ]
 

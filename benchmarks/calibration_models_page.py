@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
+from benchmarks.rolling_page import MODELS
 from bulkwear.postproc.inference.posterior import FAMILY_SHARE, interval
 from bulkwear.workflows.cases.calibration.figure_findings import reproduced
 from bulkwear.workflows.cases.calibration.outcome import Calibrated
@@ -83,6 +84,8 @@ def results_page(done: Mapping[str, Calibrated], failed: Mapping[str, str]) -> s
     aim = first.problem.measured[SHEAR_ANGLE]
     found = [finding(model, done, shares) for model in done]
     found += [f"`{model}` has no calibration: {words}" for model, words in failed.items()]
+    missing = [f"`{model}`" for model in MODELS if model not in {*done, *failed}]
+    found += [f"Not calibrated yet: {listed(missing)}."] * bool(missing)
     parts = [
         "# Which frictions does each rolling model ask for?",
         prose(

@@ -74,6 +74,10 @@ def test_the_page_says_what_each_model_asks_for(table):
         f"* `rvd` has no calibration: {RESTLESS}",
     ):
         assert words in page
+    assert "Not calibrated yet" not in page
+    assert "* Not calibrated yet: `epsd2` and `rvd`." in results_page(
+        {model: each for model, each in calibrated(table).items() if model != "epsd2"}, {}
+    )
     own_spin = next(line for line in " ".join(page.split()).split("* ") if line.startswith("`own_spin`:"))
     assert "rejects those of cdt and epsd2." in own_spin
 
