@@ -176,6 +176,18 @@ def test_which_rolling_model_is_nearest_and_when_a_layer_flows():
     assert f"creeps at {creep['cdt']:.1f} and {creep['rvd']:.1f} mm/s, under the others at {still:.3f} and less" in page
 
 
+def test_what_rolling_models_cost():
+    """Processor time of a time step over that under own_spin, with the extremes of its rounds."""
+    found = table("benchmarks.csv").query("benchmark == 'rolling_cost'").set_index("name")
+    rvd, cdt = (
+        "{:.2f} times ({:.2f} to {:.2f})".format(*line[["ratio", "ratio_low", "ratio_high"]].astype(float))
+        for model in ("rvd", "cdt")
+        for line in [found.loc[next(name for name in found.index if name.endswith(f"rolling_friction {model}"))]]
+    )
+    page = told("rolling_friction.md")
+    assert f"takes {rvd} the processor time of `own_spin` under `rvd` and {cdt} under `cdt`" in page
+
+
 def test_what_the_calibrations_pairs_give():
     """What the recommended pair and the published one are off by, and the source's pair under three rolling models."""
     page, results = told("calibration.md"), "calibration_results_standard.md"
