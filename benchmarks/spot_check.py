@@ -75,6 +75,21 @@ def wanted(origin: Origin, docs: Path) -> dict[str, str]:
     return {str(each["commit"]): digest(each["parts"]) for each in old}
 
 
+def checks_done(origins: Iterable[Origin], docs: Path) -> dict[tuple[str, str], SpotCheck]:
+    """Return {(study, hash of the code that was checked): the last check} of versions that passed up to today."""
+    found, checks = {}, read_checks(docs)
+    for origin in origins:
+        now = code_of_cases((origin.case,))
+        for version in versions_in(origin):
+            chain = passed(version, origin.checked_by, checks)
+            if not chain or newer_parts(as_new_as(version, chain), now):
+                continue
+            for count in range(len(chain)):
+                before = as_new_as(version, chain[:count]).found or {}
+                found[origin.checked_by, digest(before.get("parts"))] = chain[-1]
+    return found
+
+
 def sample_of(study: str) -> Sample:
     """Return what is simulated again of a study: the first row of its design, which most designs begin with what others
     are held against; of bulk tests a shear box. Raises VersionError where there is neither.
@@ -142,12 +157,12 @@ def spot_check(origin: Origin, before: str, folder: Path) -> SpotCheck:
     return SpotCheck(*what, before, code["commit"], code, day, count, "; ".join(faults))
 
 
-def check_pages(origins: Iterable[Origin], docs: Path, folder: Path) -> bool:
+def check_pages(origins: Iterable[Origin], docs: Path, folder: Path, known: Iterable[Origin] = ()) -> bool:
     """Do the checks that pages lack, and print a line for each; return whether all were done with the same numbers.
 
     What cannot be simulated is told on standard error, and the next page's turn comes.
     """
-    same, done = True, {}
+    same, done = True, dict(checks_done(known, docs))
     for origin in origins:
         for commit, code in wanted(origin, docs).items():
             key = origin.checked_by, code  # one row speaks for several pages, and for commits of the same code
@@ -177,7 +192,8 @@ def main() -> int:
     given = parser.parse_args()
     try:
         work_here()
-        return 0 if check_pages(chosen(read_origins(given.docs), given.page), given.docs, given.folder) else 1
+        known = read_origins(given.docs)
+        return 0 if check_pages(chosen(known, given.page), given.docs, given.folder, known) else 1
     except (ValueError, RuntimeError) as fault:
         print(fault, file=sys.stderr)
         return 1

@@ -68,6 +68,10 @@ def test_commits_of_the_same_code_are_simulated_once(monkeypatch, page, tmp_path
     assert module.check_pages([page, replace(page, versions=[twin, now_])], tmp_path, tmp_path)
     assert [(each.before, each.simulated_by) for each in read_checks(tmp_path)] == [("before", ""), ("twin", "before")]
     assert not module.wanted(replace(page, versions=[old, twin]), tmp_path)
+    monkeypatch.setattr(module, "solved", None)  # what was checked before is not simulated again
+    third = replace(page, versions=[old | {"found": old["found"] | {"commit": "third"}}])
+    assert module.check_pages([third], tmp_path, tmp_path, [page])
+    assert read_checks(tmp_path)[-1].before == "third"
 
 
 def test_another_number_is_a_difference(monkeypatch, page, tmp_path):
