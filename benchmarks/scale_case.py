@@ -64,6 +64,11 @@ CANDIDATES: dict[str, Candidate] = {
         OPEN,
         "both",
     ),
+    "one size, rolling as rvd": Candidate(
+        {"particle": {SIZES: [1.0], "mass_fractions": [1.0]}, "solver": {"rolling_friction": "rvd"}},
+        OPEN,
+        "both",
+    ),
     "sizes 0.5 to 1.5": Candidate(
         {"particle": {SIZES: [0.5, 0.75, 1.0, 1.25, 1.5], "mass_fractions": [0.1, 0.2, 0.4, 0.2, 0.1]}},
         OPEN,
@@ -150,10 +155,8 @@ class Case:
 
 
 def cases(scales: Iterable[int], names: Iterable[str], packings: int, of_reference: int) -> list[Case]:
-    """Return all runs: packing by packing, candidates in order, the reference more often than the others."""
-    told = [
-        (name, of_reference if name == REFERENCE else packings) for name in CANDIDATES if name in {*names, REFERENCE}
-    ]
+    """Return all runs of the named: packing by packing, candidates in order, the reference as often as is said."""
+    told = [(name, of_reference if name == REFERENCE else packings) for name in CANDIDATES if name in set(names)]
     return [
         Case(name, surface, scale, FIRST_SEED + number * SEED_SPACING)
         for scale in scales

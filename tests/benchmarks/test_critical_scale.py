@@ -101,8 +101,9 @@ def test_beds_are_shared_where_they_are_the_same(tmp_path):
 
 
 def test_the_reference_has_more_packings():
-    """It alone has an interval then; candidates that are not asked for are left out."""
-    found = cases((6,), (OTHER,), 1, 3)
+    """It alone has an interval then; candidates that are not asked for are left out, and so is the reference."""
+    assert [case.candidate for case in cases((6,), (OTHER,), 1, 3)] == [OTHER, OTHER]
+    found = cases((6,), (REFERENCE, OTHER), 1, 3)
     assert [case.candidate for case in found if case.surface == "convex"] == [REFERENCE, OTHER, REFERENCE, REFERENCE]
     assert len({case.seed for case in found}) == 3
 
