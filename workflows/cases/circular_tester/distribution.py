@@ -205,6 +205,26 @@ def contour_losses(pristine: SurfaceMesh, worn: SurfaceMesh, bumps: list[str]) -
     return losses[[bump for bump in bumps if bump in losses.index]] * (MILLIMETRES / MICROMETRES)
 
 
+def losses_at_volume(run: TesterRun, lost: float, bumps: list[str]) -> pd.Series:
+    """Largest vertical loss (mm) of bumps, by bump, when a sample has lost a volume (mm3): between the wear cycles
+    around it, in proportion to the volume. Empty where the run ends before.
+    """
+    wear = pd.read_csv(run.folder / "wear.csv", usecols=["cycle", "total_applied_volume_m3"])
+    volume = CUBIC_MILLIMETRES * np.r_[0.0, wear["total_applied_volume_m3"]]
+    after = int(np.searchsorted(volume, lost))
+    if lost <= 0.0 or after == len(volume):
+        return pd.Series(dtype=float)
+    pristine = top_of(read_surface(run.folder / SURFACE))
+    folders = [run.folder / f"cycle_{cycle:03d}" for cycle in wear["cycle"]]
+    around = [
+        pristine if number == 0 else top_of(read_surface(folders[number - 1] / SURFACE))
+        for number in (after - 1, after)
+    ]
+    before, beyond = (contour_losses(pristine, worn, bumps) for worn in around)
+    share = (lost - volume[after - 1]) / (volume[after] - volume[after - 1])
+    return before + share * (beyond - before)
+
+
 def cycle_surfaces(run: TesterRun, revolutions: Sequence[float] | None = None) -> dict[str, SurfaceMesh]:
     """Worn tops after about these revolutions of wear, by their number; evenly spaced ones without."""
     wear = pd.read_csv(run.folder / "wear.csv", usecols=["cycle", "revolution"])

@@ -84,7 +84,7 @@ def time_scale(lost: pd.DataFrame, plain: TesterRun, published: pd.DataFrame) ->
     volume, hours = laboratory("plain_volume_56_h"), laboratory(SHORT)
     stand_for = published_value(published, "revolutions_of_short_test", "simulation")
     packings = [one.sort_values("revolution") for _, one in lost.groupby(PACKING, sort=False)]
-    needed = estimate([_revolution_of(one, volume) for one in packings], log=True)
+    needed = estimate([revolution_of(one, volume) for one in packings], log=True)
     coefficient = estimate([plain.coefficient * volume / _at_mean_rate(one, stand_for) for one in packings], log=True)
     distance = laboratory("velocity_at_centre") * hours * SECONDS_PER_HOUR
     load = 1e3 * laboratory("normal_pressure") * plain.width * plain.length
@@ -104,7 +104,7 @@ def _volumes(one: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
     return one["revolution"].to_numpy(float), CUBIC_MILLIMETRES * one["volume_m3"].to_numpy(float)
 
 
-def _revolution_of(one: pd.DataFrame, volume: float) -> float:
+def revolution_of(one: pd.DataFrame, volume: float) -> float:
     """Revolution at which a run has lost a volume (mm3), at its mean rate beyond its end."""
     revolutions, lost = _volumes(one)
     if volume > lost[-1]:

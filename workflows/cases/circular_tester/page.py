@@ -34,7 +34,7 @@ SENSITIVITY_NOTE = (
 )
 NUMBERS_NOTE = (
     "Means of the main pair over its revolutions; of the patterned sample, where it is said, of the first one. Losses "
-    "of bumps are told in proportion to the volume that the laboratory's sample had lost."
+    "of bumps are those when the sample has lost what the laboratory's had, between the wear cycles around that volume."
 )
 EFFECTS_NOTE = (
     "Factor: by which a change multiplies a number, least squares of the logarithm over all settings; interval: 95 %, "

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bulkwear.workflows.cases.circular_tester.runs import SURFACE, VARIED, TesterRun, pairs_of
+from bulkwear.workflows.cases.circular_tester.runs import VARIED, TesterRun, pairs_of
 from bulkwear.workflows.report.text import range_text
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ FACTORS = {
     "revolutions": (("sliding", "revolutions"), 1.0),
     "wear cycles per revolution": (("sliding", "cycles_per_revolution"), 1.0),
 }
+LABORATORY_HOURS = (56, 184)  # after which the laboratory's samples were weighed
 NO_VALUE = "none"  # of a setting that a run does not use
 
 
@@ -83,39 +84,52 @@ def pairs_by_setting(runs: Sequence[TesterRun]) -> dict[str, list[tuple[TesterRu
     return found
 
 
-def numbers_of_pair(
-    patterned: TesterRun, plain: TesterRun, convex_volume_184_h: float, times_source: float
-) -> dict[str, float]:
-    """Return {key of a claim: value in its unit} of a packing of a setting.
+def numbers_of_pair(patterned: TesterRun, plain: TesterRun, published: pd.DataFrame) -> dict[str, float]:
+    """Return {key of a claim: value in its unit} of a packing of a setting, those that its revolutions reach.
 
-    convex_volume_184_h: mm3 that the laboratory's convex sample lost; ours is measured when it has lost less, so losses
-    of bumps are told in proportion; times_source: wear coefficient over the source's, at which volumes are told
+    published: as config/published/circular_tester.csv
     """
-    return {
-        **_of_volumes(patterned, plain, times_source),
+    found = {
+        **_of_volumes(patterned, plain, published),
         **_of_flow(patterned, plain),
-        **_of_places(patterned, plain, convex_volume_184_h),
+        **_of_places(patterned, plain, published),
     }
+    return {key: value for key, value in found.items() if not np.isnan(value)}
 
 
-def _of_volumes(patterned: TesterRun, plain: TesterRun, times_source: float) -> dict[str, float]:
-    """Volumes (mm3) per revolution, their ratio, and how far contacts slide over how far the trough goes."""
+def _of_volumes(patterned: TesterRun, plain: TesterRun, published: pd.DataFrame) -> dict[str, float]:
+    """Volumes (mm3) per revolution at the source's wear coefficient, their ratio, the convex one's at the laboratory's
+    volumes of the plain one, and how far contacts slide over how far the trough goes.
+    """
     import pandas as pd
 
     from bulkwear.postproc.tables.summary import run_summary
+    from bulkwear.workflows.cases.circular_tester.hours import revolution_of
     from bulkwear.workflows.cases.circular_tester.key_numbers import sliding_over_travel
-    from bulkwear.workflows.cases.circular_tester.volume import shared_revolutions, volumes, volumes_at
+    from bulkwear.workflows.cases.circular_tester.volume import shared_revolutions, times_source, volumes, volumes_at
 
     lost = volumes([patterned, plain])
-    last = shared_revolutions(lost)
-    of = {run.name: float(volumes_at(lost[lost["run"] == run.name], last).iloc[0]) for run in (patterned, plain)}
+    last, times = shared_revolutions(lost), times_source(plain.coefficient, published)
+    convex, bare = (lost[lost["run"] == run.name] for run in (patterned, plain))
+    of_convex, of_bare = (float(volumes_at(rows, last).iloc[0]) for rows in (convex, bare))
     summary = run_summary(pd.read_csv(plain.folder / "wear.csv"))
     return {
-        "plain_volume": of[plain.name] / last / times_source,
-        "convex_volume": of[patterned.name] / last / times_source,
-        "loss_ratio": of[patterned.name] / of[plain.name],
+        "plain_volume": of_bare / last / times,
+        "convex_volume": of_convex / last / times,
+        "loss_ratio": of_convex / of_bare,
+        **{
+            f"convex_volume_{hours}_h": float(volumes_at(convex, revolution_of(bare, volume)).iloc[0])
+            for hours in LABORATORY_HOURS
+            for volume in [_measured(published, f"plain_volume_{hours}_h")]
+        },
         "plain_slip": float(sliding_over_travel(summary)),
     }
+
+
+def _measured(published: pd.DataFrame, quantity: str) -> float:
+    from bulkwear.postproc.tables.summary import published_value
+
+    return published_value(published, quantity, "laboratory")
 
 
 def _of_flow(patterned: TesterRun, plain: TesterRun) -> dict[str, float]:
@@ -138,9 +152,10 @@ def _of_flow(patterned: TesterRun, plain: TesterRun) -> dict[str, float]:
     }
 
 
-def _of_places(patterned: TesterRun, plain: TesterRun, lost_at_184_h: float) -> dict[str, float]:
-    """Where it wears: columns, pattern, force on the first column, largest losses of bumps (mm)."""
-    from bulkwear.postproc.mesh import read_surface
+def _of_places(patterned: TesterRun, plain: TesterRun, published: pd.DataFrame) -> dict[str, float]:
+    """Where it wears: columns, pattern, force on the first column, largest losses of bumps (mm) when the sample has
+    lost what the laboratory's had after the long test.
+    """
     from bulkwear.workflows.cases.circular_tester import distribution
 
     _, worn = distribution.surfaces_alike([patterned, plain])
@@ -149,14 +164,14 @@ def _of_places(patterned: TesterRun, plain: TesterRun, lost_at_184_h: float) -> 
     of = {run.name: columns[columns["run"] == run.name].set_index("column") for run in (patterned, plain)}
     total, bare = of[patterned.name]["total"], of[plain.name]["total"]
     first = distribution.mean_force_by_column(patterned, borders).set_index("column").loc[1]
-    pristine = distribution.top_of(read_surface(patterned.folder / SURFACE))
-    losses = distribution.contour_losses(pristine, worn[patterned.name], distribution.SHOWN_BUMPS)
+    measured = _measured(published, f"convex_volume_{LABORATORY_HOURS[-1]}_h")
+    losses = distribution.losses_at_volume(patterned, measured, distribution.SHOWN_BUMPS)
     return {
         "plain_columns": float(bare.iloc[-1] / bare.iloc[0]),
         "first_column": float(total.iloc[0] / total.mean()),
         "first_column_force": 100.0 * float(first["bumps_N"] / (first["bumps_N"] + first["base_N"])),
         "bump_share": 100.0 * float(of[patterned.name]["bumps_mm3"].sum() / total.sum()),
-        **{f"loss_{bump}": float(loss) * lost_at_184_h / float(total.sum()) for bump, loss in losses.items()},
+        **{f"loss_{bump}": float(loss) for bump, loss in losses.items()},
     }
 
 
@@ -169,18 +184,20 @@ def sensitivity_table(
     direction alone), value (mean over packings), packings, interval_low, interval_high, over (-, value over the nearest
     value that agrees, 1 where it does itself), reached (whether it agrees), verdict, reason, source.
 
-    numbers: by pair, those of each packing; a claim that none has a number of is left out. One packing has a value and
-    no verdict: reached is then of that packing.
+    numbers: by pair, those of each packing; a claim has no row of pairs that have no number of it. One packing has a
+    value and no verdict: reached is then of that packing.
     """
     import pandas as pd
 
     from bulkwear.postproc.statistics.intervals import estimate
     from bulkwear.postproc.statistics.verdicts import judged
 
-    there, rows = {key for packings in numbers.values() for each in packings for key in each}, []
+    rows = []
     for pair, packings in numbers.items():
-        for key, claim in ((key, claim) for key, claim in claims.items() if key in there):
-            found = estimate([each.get(key, np.nan) for each in packings], log=True)
+        for key, claim in claims.items():
+            if not (values := [each[key] for each in packings if key in each]):
+                continue
+            found = estimate(values, log=True)
             verdict, (low, high) = judged(claim, found), found.interval()
             nearest = float(np.clip(found.value, *claim.region))
             row = {"pair": pair, "key": key, "quantity": claim.finding, "unit": claim.unit, "published": claim.words}
@@ -216,22 +233,22 @@ def effects_table(table: pd.DataFrame, changes: Mapping[str, Mapping[str, str]])
     """Return what each change does to each number: key, quantity, change, factor (-, with the change over without), and
     its 95 % interval, low and high, from how far the settings are off a product of such factors.
 
-    table: as from `sensitivity_table`; changes: as from `changes_of`. Least squares of the logarithm over all settings,
-    each once. Nothing for settings that cannot tell the changes apart.
+    table: as from `sensitivity_table`; changes: as from `changes_of`. Least squares of the logarithm over all settings
+    that have the number, each once. Nothing where these cannot tell the changes apart.
     """
     import pandas as pd
 
     from bulkwear.postproc.statistics.intervals import CONFIDENCE, students_t
 
-    pairs = list(dict.fromkeys(table["pair"]))
-    named = list(dict.fromkeys((name, value) for pair in pairs for name, value in changes[pair].items()))
-    design = np.array([[1.0, *(changes[pair].get(name) == value for name, value in named)] for pair in pairs])
-    columns, freedom = ["key", "quantity", "change", "factor", "low", "high"], len(pairs) - design.shape[1]
-    if not named or np.linalg.matrix_rank(design) < design.shape[1]:
-        return pd.DataFrame(columns=columns)
-    inverse, rows = np.linalg.pinv(design), []
+    columns, rows = ["key", "quantity", "change", "factor", "low", "high"], []
     for key, of in table.groupby("key", sort=False):
-        logarithms = np.log(of.set_index("pair")["value"].reindex(pairs).to_numpy(float))
+        pairs, logarithms = list(of["pair"]), np.log(of["value"].to_numpy(float))
+        named = list(dict.fromkeys((name, value) for pair in pairs for name, value in changes[pair].items()))
+        design = np.array([[1.0, *(changes[pair].get(name) == value for name, value in named)] for pair in pairs])
+        freedom = len(pairs) - design.shape[1]
+        if np.linalg.matrix_rank(design) < design.shape[1]:
+            continue
+        inverse = np.linalg.pinv(design)
         found = inverse @ logarithms
         error = np.full(len(found), np.nan)
         if freedom > 0:
@@ -243,22 +260,24 @@ def effects_table(table: pd.DataFrame, changes: Mapping[str, Mapping[str, str]])
     return pd.DataFrame(rows, columns=columns)
 
 
-def sentences(table: pd.DataFrame, changes: Mapping[str, Mapping[str, str]]) -> list[str]:
-    """Return how many published numbers the settings with most of them reach, which are out of reach of all, and what
-    is left of the factor in the plain volume.
+def sentences(table: pd.DataFrame, changes: Mapping[str, Mapping[str, str]], claims: Mapping[str, Claim]) -> list[str]:
+    """Return how many published numbers the settings with most of them reach, which are out of reach of all, which
+    have no value, and what is left of the factor in the plain volume.
     """
-    reached = table.groupby("pair", sort=False)["reached"].sum()
-    best, count = most_reached(reached), table["key"].nunique()
+    counts = table.groupby("pair", sort=False)["reached"].agg(["sum", "size"])
+    best, usual = most_reached(counts["sum"]), counts.loc[REFERENCE]
     settings = "; ".join(words_of(changes[pair]) for pair in best)
     left = [_plain_volume(table, pair) for pair in best]
     of_all = table.groupby("key", sort=False).agg(quantity=("quantity", "first"), reached=("reached", "any"))
     missed = "; ".join(of_all.loc[~of_all["reached"], "quantity"])
+    without = "; ".join(claim.finding for key, claim in claims.items() if key not in of_all.index)
     return [
-        f"The reference reaches {reached[REFERENCE]} of {count} published numbers; most, {reached.max()}, are reached"
-        f" by {len(best)} of {len(reached)} settings ({settings}).",
+        f"The reference reaches {usual['sum']} of {usual['size']} published numbers; most, {counts['sum'].max()}, are"
+        f" reached by {len(best)} of {len(counts)} settings ({settings}).",
         f"The source's plain sample loses {_plain_volume(table, REFERENCE):.3g} times what ours does in the reference,"
         f" and {range_text(left, 3)} times where most is reached.",
         f"Reached by no setting: {missed or 'none'}.",
+        *([f"Without a value, as these samples lose too little or lack the place: {without}."] if without else []),
     ]
 
 

@@ -35,7 +35,10 @@ CLAIMS_PART = "tester_sensitivity"
 SENSITIVITY, EFFECTS = "tester/sensitivity.csv", "tester/sensitivity_effects.csv"
 SETTINGS_SAID = "tester/sensitivity.txt"  # sentences of the page
 NUMBERS = "tester/published_numbers.csv"
-TOLD_AS_FINDINGS = ("loss_ratio", "plain_columns", "first_column", "bump_share")  # numbers that findings judge already
+TOLD_ELSEWHERE = (  # numbers that findings or the table of hours have already
+    *("loss_ratio", "plain_columns", "first_column", "bump_share"),
+    *("convex_volume_56_h", "convex_volume_184_h"),
+)
 
 
 def varies_source(study: Study) -> bool:
@@ -45,13 +48,10 @@ def varies_source(study: Study) -> bool:
 
 def _numbers(job: Job, pairs: Sequence[tuple[TesterRun, TesterRun]]) -> list[dict[str, float]]:
     """Return the numbers of each packing of a setting, see `sensitivity.numbers_of_pair`."""
-    from bulkwear.postproc.tables.summary import published_value
     from bulkwear.workflows.cases.circular_tester.sensitivity import numbers_of_pair
-    from bulkwear.workflows.cases.circular_tester.volume import times_source
 
     (published,) = read(job, "published")
-    lost = published_value(published, "convex_volume_184_h", "laboratory")
-    return [numbers_of_pair(*pair, lost, times_source(pair[1].coefficient, published)) for pair in pairs]
+    return [numbers_of_pair(*pair, published) for pair in pairs]
 
 
 @tables(inputs={**PUBLISHED, **CLAIMS, **WEAR}, told={**PAIRS, **FOREIGN}, tables={"numbers": NUMBERS}, **OF_PAIRS)
@@ -63,7 +63,7 @@ def tester_numbers(job: Job) -> dict[str, pd.DataFrame]:
     from bulkwear.workflows.config.claims import claims_of
 
     claims = claims_of(CLAIMS_PART, job.files.claims)
-    claims = {key: claim for key, claim in claims.items() if key not in TOLD_AS_FINDINGS}
+    claims = {key: claim for key, claim in claims.items() if key not in TOLD_ELSEWHERE}
     pairs = [pair for pair in pairs_of(runs_of(job)) if pair[0].surface not in job.told.foreign]
     numbers = _numbers(job, pairs)
     return {"numbers": sensitivity.numbers_table(numbers, claims)}
@@ -81,8 +81,9 @@ def tester_numbers(job: Job) -> dict[str, pd.DataFrame]:
     caption="""
     A line per published number of chapter 6 (Yan 2022), with the values that agree with it, margins included; a column
     per setting. White and framed: the number agrees. Colour: how far ours is above (red) or below (blue) the nearest
-    value that agrees. At the bottom: how many each setting reaches, and what it is, with what differs from the first
-    one, the reference, in bold. Of one packing what is said is of that packing.
+    value that agrees; a dash: the run is too short for it. At the bottom: how many each setting reaches of those that
+    it has, of how many packings, and what it is, with what differs from the first one, the reference, in bold. Of one
+    packing what is said is of that packing.
     """,
 )
 def tester_sensitivity(job: Job) -> Any:
@@ -92,9 +93,10 @@ def tester_sensitivity(job: Job) -> Any:
     from bulkwear.workflows.config.claims import claims_of
 
     numbers = {pair: _numbers(job, packings) for pair, packings in sensitivity.pairs_by_setting(runs_of(job)).items()}
-    table = sensitivity.sensitivity_table(numbers, claims_of(CLAIMS_PART, job.files.claims))
+    claims = claims_of(CLAIMS_PART, job.files.claims)
+    table = sensitivity.sensitivity_table(numbers, claims)
     changes = changes_of(job.told.settings)
     effects = sensitivity.effects_table(table, changes)
-    said = "\n".join(sensitivity.sentences(table, changes)) + "\n"
+    said = "\n".join(sensitivity.sentences(table, changes, claims)) + "\n"
     further = {"sensitivity": table, "effects": effects, "said": said}
     return reached_by_setting(table, job.told.settings, changes, job.remarks), table, further

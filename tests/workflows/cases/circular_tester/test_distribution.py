@@ -1,5 +1,7 @@
 """Wear by column and bump, forces by column, mesh size: sums are kept and land where they belong."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,7 +9,7 @@ import pytest
 from bulkwear.meshes.pattern import ConvexPattern
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.meshes.sample import sample_top
-from bulkwear.postproc.mesh import SurfaceMesh, areas, centroids
+from bulkwear.postproc.mesh import SurfaceMesh, areas, centroids, write_surface
 from bulkwear.postproc.tables.depths import WORN_VOLUME
 from bulkwear.workflows.cases.circular_tester.distribution import (
     column_borders,
@@ -15,6 +17,7 @@ from bulkwear.workflows.cases.circular_tester.distribution import (
     columns_over_packings,
     contour_losses,
     force_by_column,
+    losses_at_volume,
     mesh_size_effect,
     on_finest_mesh,
     share_of_bumps,
@@ -166,3 +169,21 @@ def test_losses_of_contours(convex):
     lower = SurfaceMesh(convex.points - (0.0, 0.0, 2e-4), convex.triangles, convex.cell_data)
     losses = contour_losses(convex, lower, ["C11", "C15", "C99"])
     assert losses.to_dict() == pytest.approx({"C11": 0.2, "C15": 0.2})
+
+
+@pytest.mark.parametrize(
+    ("volume", "loss"), [(5.0, 0.1), (10.0, 0.2), (25.0, 0.25), (40.0, 0.3), (41.0, None), (0.0, None)]
+)
+def test_losses_at_a_volume(convex, tmp_path, volume, loss):
+    """Two cycles that lower a sample by 0.2 and 0.3 mm at 10 and 40 mm3: straight between them, from the pristine one
+    on, and nothing beyond the run.
+    """
+    for number, depth in enumerate((0.0, 2e-4, 3e-4)):
+        folder = tmp_path / (f"cycle_{number:03d}" if number else "")
+        folder.mkdir(exist_ok=True)
+        lower = SurfaceMesh(convex.points - (0.0, 0.0, depth), convex.triangles, convex.cell_data)
+        write_surface(folder / "surface.vtu", lower)
+    table = pd.DataFrame({"cycle": [1, 2], "total_applied_volume_m3": [1e-8, 4e-8]})
+    table.to_csv(tmp_path / "wear.csv", index=False)
+    found = losses_at_volume(SimpleNamespace(folder=tmp_path), volume, ["C11", "C15"])
+    assert found.to_dict() == pytest.approx({} if loss is None else {"C11": loss, "C15": loss})

@@ -32,7 +32,7 @@ def test_tables_of_an_earlier_choice_of_rows_are_not_shown(tmp_path, monkeypatch
 def test_what_runs_differ_in_is_listed():
     """Rolling models, heights of the bed, thicknesses, and the contact of each material that is not that of steel."""
     said = words(load_study("tester_sensitivity", overrides=QUICK))
-    assert "rolling friction (cdt or own_spin) alone" in said["Coarse-grained particles"]
+    assert "rolling friction (cdt or own_spin or rvd) alone" in said["Coarse-grained particles"]
     assert "(150 or 190 mm)" in said["Not published"] and "(2 or 10 mm)" in said["Not published"]
     assert said["Not published"].endswith(
         "The sample's contact with particles is that of steel, as in the model that chapter 6 refers to, or that of"

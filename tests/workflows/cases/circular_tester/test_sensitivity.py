@@ -31,7 +31,13 @@ from bulkwear.workflows.report.sections import Section
 
 CLAIMS = claims_of(CLAIMS_PART)
 MIDDLE = {key: 0.5 * sum(claim.magnitude) if claim.magnitude else claim.reference for key, claim in CLAIMS.items()}
-FACTORS = {"friction": 1.3, "rolling": 1.1, "bed": 0.8, "thin": 1.02}  # what each change does to every number
+FACTORS = {
+    "friction": 1.3,
+    "rolling": 1.1,
+    "bed": 0.8,
+    "thin": 1.02,
+    "rvd": 1.05,
+}  # what each change does to every number
 EXACT = 1e-9
 
 
@@ -52,8 +58,11 @@ def table(settings):
 
 
 def test_each_thing_is_changed_alone_and_with_two_others(settings):
-    """Four changes of one thing, and of the others three at a time: no two of the four go together more often."""
-    changes = changes_of(settings)
+    """Four changes of one thing, and of the others three at a time: no two of the four go together more often. A second
+    rolling model stands beside them, alone.
+    """
+    changes = dict(changes_of(settings))
+    assert changes.pop("rvd") == {"rolling model": "rvd"}
     assert sorted(map(len, changes.values())) == [0, 1, 1, 1, 1, 3, 3, 3, 3] and not changes[REFERENCE]
     names = sorted({name for each in changes.values() for name in each})
     signs = np.array([[1 if name in each else -1 for name in names] for pair, each in changes.items() if each])
@@ -95,7 +104,8 @@ def test_a_pair_in_another_machine_is_no_reference():
 def test_what_a_change_does_comes_back(table, settings):
     """Of numbers that are products of factors the factors are found, without an error left."""
     effects = effects_table(table, changes_of(settings))
-    words = {"friction of": "friction", "rolling": "rolling", "height of the bed": "bed", "thickness": "thin"}
+    words = {"friction of": "friction", "rolling model own_spin": "rolling", "rolling model rvd": "rvd"}
+    words |= {"height of the bed": "bed", "thickness": "thin"}
     assert len(effects) == len(CLAIMS) * len(FACTORS)
     for row in effects.itertuples():
         name = next(name for start, name in words.items() if row.change.startswith(start))
@@ -131,6 +141,24 @@ def test_a_number_that_no_setting_has_is_left_out():
     assert set(sensitivity_table({REFERENCE: [bare]}, CLAIMS)["key"]) == set(bare)
 
 
+def test_a_number_that_some_settings_lack(table, settings):
+    """Runs too short for it: no row, a dash in the figure; effects are those of the settings that have it."""
+    changes, lacking = changes_of(settings), [pair for pair in settings if pair not in (REFERENCE, "friction", "bed")]
+    some = table[(table["key"] != "loss_C15") | ~table["pair"].isin(lacking)]
+    effects = effects_table(some, changes)
+    of_it = effects[effects["key"] == "loss_C15"]
+    assert of_it["factor"].to_numpy() == pytest.approx([FACTORS["friction"], FACTORS["bed"]], rel=EXACT)
+    assert (effects["key"] != "loss_C15").sum() == (len(CLAIMS) - 1) * len(FACTORS)
+    figure = reached_by_setting(some, settings, changes, ["tiny"])
+    texts = [text.get_text() for text in figure.axes[0].texts]
+    assert texts.count("-") == len(lacking)
+    reached = some[some["pair"] == "rvd"]["reached"].sum()
+    assert f"{reached}/{len(CLAIMS) - 1}" in texts
+    assert "Without a value" not in " ".join(sentences(some, changes, CLAIMS))
+    without = sentences(table[table["key"] != "loss_C15"], changes, CLAIMS)[-1]
+    assert without.startswith("Without a value") and without.endswith(f": {CLAIMS['loss_C15'].finding}.")
+
+
 def test_numbers_are_told_as_claims_with_verdicts():
     """Of packings that lie close together; a number that none has is left out, without any there is an empty table."""
     packings = [{key: each * value for key, value in MIDDLE.items() if key != "loss_C15"} for each in (0.999, 1, 1.001)]
@@ -158,7 +186,7 @@ def test_numbers_go_to_the_page_of_published_numbers(tmp_path):
 def test_sentences_name_all_settings_that_reach_most_and_what_none_reaches(table, settings):
     """Counts are those of the table; the factor in the plain volume is the published one over ours."""
     nowhere = CLAIMS["plain_force"].key
-    said = sentences(table.assign(reached=table["reached"] & (table["key"] != nowhere)), changes_of(settings))
+    said = sentences(table.assign(reached=table["reached"] & (table["key"] != nowhere)), changes_of(settings), CLAIMS)
     counts = table[table["key"] != nowhere].groupby("pair", sort=False)["reached"].sum()
     most = (counts == counts.max()).sum()
     assert f"reaches {counts[REFERENCE]} of {len(CLAIMS)} published numbers; most, {counts.max()}, are" in said[0]
@@ -173,9 +201,11 @@ def test_the_figure_shows_every_value_and_setting(table, settings):
     figure = reached_by_setting(table, settings, changes_of(settings), ["tiny"])
     texts = [text.get_text() for text in figure.axes[0].texts]
     assert sum(text == f"{MIDDLE['plain_force']:.3g}" for text in texts) >= 1
-    assert texts.count("own_spin") == 4 and texts.count("cdt") == 5
+    assert texts.count("own_spin") == 4 and texts.count("cdt") == 5 and texts.count("rvd") == 1
     labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
-    assert labels[len(CLAIMS)] == f"reached, of {len(CLAIMS)}" and "height of the bed, mm" in labels
+    assert labels[len(CLAIMS)] == "reached, of how many"
+    assert f"{table[table['pair'] == REFERENCE]['reached'].sum()}/{len(CLAIMS)}" in texts
+    assert labels[len(CLAIMS) + 1] == "packings" and texts.count("3") == 1 and "height of the bed, mm" in labels
     assert "Convex over plain: 0.426 to 0.65" in labels
 
 

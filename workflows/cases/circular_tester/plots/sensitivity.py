@@ -15,7 +15,8 @@ from bulkwear.postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, new_fig
 
 FARTHEST = 2.0  # doublings from the nearest value that agrees at which colours end
 DARK = 0.6  # -, of FARTHEST: from there on text is white
-SHOWN = ("value", "over", "reached")  # columns of the table
+SHOWN = ("value", "over", "reached", "packings")  # columns of the table
+MISSING = "-"  # in place of a value
 LONGEST_WORD = 5  # characters, bold, that fit under a cell; longer ones are smaller
 LOOK = {"fontsize": 8.0, "ha": "center", "va": "center"}  # of the text of cells
 
@@ -36,21 +37,30 @@ def reached_by_setting(
     axes = figure.subplots()
     keys, pairs = list(dict.fromkeys(table["key"])), list(dict.fromkeys(table["pair"]))
     cells = {name: table.pivot(index="key", columns="pair", values=name).loc[keys, pairs] for name in SHOWN}
+    reached, known = cells["reached"].eq(True), cells["value"].notna()
     off = np.log2(cells["over"].to_numpy(float))
     norm = TwoSlopeNorm(0.0, -FARTHEST, FARTHEST)
     picture = axes.imshow(np.clip(off, -FARTHEST, FARTHEST), cmap="RdBu_r", norm=norm, aspect="auto")
     for line, column in np.ndindex(off.shape):
-        value, there = cells["value"].iloc[line, column], bool(cells["reached"].iloc[line, column])
+        value, there = cells["value"].iloc[line, column], reached.iloc[line, column]
         colour = "white" if abs(off[line, column]) > DARK * FARTHEST else "black"
-        axes.text(column, line, f"{value:.3g}", color=colour, fontweight="bold" if there else "normal", **LOOK)
+        axes.text(
+            column,
+            line,
+            MISSING if np.isnan(value) else f"{value:.3g}",
+            color=colour,
+            fontweight="bold" if there else "normal",
+            **LOOK,
+        )
         if there:
             axes.add_patch(Rectangle((column - 0.47, line - 0.44), 0.94, 0.88, fill=False, linewidth=0.8))
     said = table.drop_duplicates("key").set_index("key").loc[keys]
     names = [f"{row.quantity}: {_published(row)}" for row in said.itertuples()]
     varied = list(dict.fromkeys(factor for pair in pairs for factor in changes[pair]))
-    count = {pair: f"{cells['reached'][pair].sum()}" for pair in pairs}
-    below = {f"reached, of {len(keys)}": count} | {
-        name: {pair: settings[pair][name] for pair in pairs} for name in varied
+    below = {
+        "reached, of how many": {pair: f"{reached[pair].sum()}/{known[pair].sum()}" for pair in pairs},
+        "packings": {pair: f"{cells['packings'][pair].max():g}" for pair in pairs},
+        **{name: {pair: settings[pair][name] for pair in pairs} for name in varied},
     }
     _lines_below(axes, below, changes, len(keys))
     axes.set_yticks(range(len(keys) + len(below)), [*names, *below], fontsize=LOOK["fontsize"])
@@ -74,7 +84,7 @@ def _published(row: pd.Series) -> str:
 def _lines_below(
     axes: Axes, lines: Mapping[str, Mapping[str, str]], changes: Mapping[str, Mapping[str, str]], first: int
 ) -> None:
-    """Write lines of words under the cells; what differs from the reference is bold."""
+    """Write lines of words under the cells; what differs from the reference is bold, and so is the first line."""
     for number, (name, words) in enumerate(lines.items()):
         for column, (pair, word) in enumerate(words.items()):
             changed = number == 0 or name in changes[pair]
