@@ -38,6 +38,9 @@ BLOCK = 3  # -, spheres along each side of a cube
 GRAVITY = 9.81  # m/s2
 ACCELERATION = 0.01  # relative: the lever of the contact is shorter than the radius by half of the overlap
 RESTARTED = 1e-9  # relative: rounding, which rolling does not amplify
+# Relative to the largest spin, under rvd with many contacts: the half step after a restart shares friction out between
+# contacts from spins that are half a step later. Seen 2e-5.
+SHARED_ANEW = 1e-4
 AT_REST = 1e-9  # rad/s in a bed at rest
 MOST_ENERGY = 1e-3  # relative to that of the drop: what the solver's steps add to an elastic contact
 STANDS = 1e-9  # m in 0.1 s, after the deflection of the tangential spring has come to rest
@@ -321,10 +324,20 @@ def test_a_bed_falls_and_comes_to_rest(model, tmp_path):
         assert np.abs(found["spin"][-1]).max() < AT_REST < np.abs(found["spin"][0]).max()
 
 
+@pytest.mark.parametrize(
+    "deck",
+    [
+        lambda model: slope_deck(model, 2.0 * COEFFICIENT, 1e-5, 0.04),
+        lambda model: block_deck(model, block_spins(20.0), steps=100, every=50),
+    ],
+    ids=["one contact", "many contacts"],
+)
 @pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
-def test_a_restart_goes_on_as_if_nothing_had_been(model, tmp_path):
-    """They keep nothing from step to step: spins after a restart are those of a run in one piece."""
-    whole = slope_deck(model, 2.0 * COEFFICIENT, 1e-5, 0.04)
+def test_a_restart_goes_on_as_if_nothing_had_been(model, deck, tmp_path):
+    """They keep nothing from step to step: spins after a restart are those of a run in one piece, though under rvd many
+    contacts share friction out anew.
+    """
+    whole = deck(model)
     start, run = whole.rsplit("run ", 1)
     first = f"{start}run {int(run) // 2}\nwrite_restart half.restart\n"
     created = [
@@ -335,7 +348,8 @@ def test_a_restart_goes_on_as_if_nothing_had_been(model, tmp_path):
     expected = simulated(tmp_path / "whole", whole)
     simulated(tmp_path / "pieces", first)
     found = simulated(tmp_path / "pieces", f"{again}\nrun {int(run) // 2}\n")
-    np.testing.assert_allclose(found["spin"][-1], expected["spin"][-1], rtol=RESTARTED, atol=STOPPED)
+    spins, share = expected["spin"][-1], SHARED_ANEW if model == "rvd" and len(expected["spin"][-1]) > 1 else 0.0
+    np.testing.assert_allclose(found["spin"][-1], spins, rtol=RESTARTED, atol=STOPPED + share * np.abs(spins).max())
 
 
 @pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
