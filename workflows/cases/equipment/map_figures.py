@@ -76,8 +76,9 @@ PACKINGS = "means over blocks and packings, told by area patches"
     digits=DIGITS,
     caption="""
     Hours of operation until a part has to be changed, by the rule at its name, at the place that decides. Bars of
-    error: 95 % interval from the scatter of packings and from the wear coefficient as given; without one the scatter is
-    unknown. An upper axis is in megatonnes of feed, where all designs have one feed.
+    error: 95 % interval from the scatter of packings, of one packing that of its blocks, and from the wear coefficient
+    as given; without one the scatter is unknown. An upper axis is in megatonnes of feed, where all designs have one
+    feed.
     """,
 )
 def life_bars(job: Job) -> Any:

@@ -370,21 +370,22 @@ def test_hours_have_colours():
 
 def lives(*rows):
     table = pd.DataFrame(rows, columns=["setting", "part", "life_h", "life_low_h", "life_high_h"])
-    return table.assign(rule="10 mm left", allowed_mm=20.0)
+    return table.assign(packings=3, rule="10 mm left", allowed_mm=20.0)
 
 
 @pytest.mark.parametrize(
     ("row", "per_mt", "words"),
     [
-        ((5234.0, 4300.0, 6512.0), np.nan, "5,230 h (4,300 to 6,510)"),
-        ((5234.0, 4300.0, np.inf), np.nan, "5,230 h (4,300 to no end)"),
-        ((5234.0, np.nan, np.nan), np.nan, "5,230 h"),
-        ((1e6, np.nan, np.nan), 1000.0, "1,000,000 h, 1,000 Mt"),
-        ((0.5, 0.4, 0.6), 1000.0, "0.5 h (0.4 to 0.6), 0.0005 Mt"),
+        ((5234.0, 4300.0, 6512.0, 3), np.nan, "5,230 h (4,300 to 6,510)"),
+        ((5234.0, 4300.0, 6512.0, 1), np.nan, "5,230 h (4,300 to 6,510, one packing)"),
+        ((5234.0, 4300.0, np.inf, 3), np.nan, "5,230 h (4,300 to no end)"),
+        ((5234.0, np.nan, np.nan, 1), np.nan, "5,230 h"),
+        ((1e6, np.nan, np.nan, 3), 1000.0, "1,000,000 h, 1,000 Mt"),
+        ((0.5, 0.4, 0.6, 2), 1000.0, "0.5 h (0.4 to 0.6), 0.0005 Mt"),
     ],
 )
 def test_words_of_a_life(row, per_mt, words):
-    names = ("life_h", "life_low_h", "life_high_h")
+    names = ("life_h", "life_low_h", "life_high_h", "packings")
     assert curves.life_words(SimpleNamespace(**dict(zip(names, row, strict=True))), per_mt) == words
 
 
@@ -425,6 +426,17 @@ def test_an_interval_that_tells_nothing_is_not_drawn():
     assert faults_of(figure) == [] and figure.axes[0].get_xlim()[1] < 1e5
     assert "14,000 h" in words_of(figure) and "do not tell the life within a factor of 100" in words_of(figure)
     assert "do not tell" not in words_of(curves.life_bars(lives(rows[0]), {}, REMARKS))
+
+
+def test_an_axis_is_as_long_as_what_is_drawn():
+    """It goes past the longest bar for an interval without an end, and not for one that is not drawn."""
+    bar, open_ended, untold = (
+        ("A", "liner", 5200.0, *ends) for ends in ((4300.0, 6500.0), (4300.0, np.inf), (1.0, 1e9))
+    )
+    drawn, longer, without = (
+        curves.life_bars(lives(row), {}, REMARKS).axes[0].get_xlim()[1] for row in (bar, open_ended, untold)
+    )
+    assert without == pytest.approx(5200.0 / 6500.0 * drawn) and longer > without
 
 
 def test_a_recession_that_is_not_drawn_to_its_end():

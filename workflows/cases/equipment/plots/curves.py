@@ -143,8 +143,8 @@ _LINES = {"flow": _flow_lines, "held": _held_line, "power": _power_lines}
 def life_bars(lives: pd.DataFrame, hours_per_mt: Mapping[str, float], remarks: Sequence[str]) -> Figure:
     """Draw the life (h) of each part and setting with its 95 % interval, Mt on the upper axis.
 
-    lives: setting, part, life_h, life_low_h, life_high_h (infinite or NaN where there is no end), rule; an interval
-        that tells nothing is not drawn
+    lives: setting, part, life_h, life_low_h, life_high_h (infinite or NaN where there is no end), packings, rule; an
+        interval that tells nothing is not drawn
     hours_per_mt: {setting: hours}; where settings differ, or without an inlet, there is no upper axis, and bars say Mt
     """
     parts, settings = (list(dict.fromkeys(lives[name])) for name in ("part", "setting"))
@@ -171,7 +171,7 @@ def life_bars(lives: pd.DataFrame, hours_per_mt: Mapping[str, float], remarks: S
     axes.set_yticks(range(len(parts)), [_with_rule(lives, part) for part in parts])
     axes.grid(axis="y", visible=False)
     axes.set_xscale("log" if wide else "linear")
-    longest *= 1.0 if np.isfinite(ends[:, 1][np.isfinite(ends[:, 0])]).all() else PAST_THE_END
+    longest *= PAST_THE_END if (np.isfinite(lives["life_low_h"]) & ~np.isfinite(lives["life_high_h"])).any() else 1.0
     share = BAR_SHARE if shared or not hours_per_mt else BAR_SHARE_MT
     room = left * (longest / left) ** (1.0 / share) if wide else longest / share
     axes.set(xlim=(left, room), xlabel="Life (h of operation)")
@@ -227,13 +227,13 @@ def _life_bar(
 
 
 def life_words(row: tuple, hours_per_mt: float = np.nan) -> str:
-    """Return a life with its interval in words; row: life_h, life_low_h, life_high_h; the mass where hours_per_mt is
-    known.
+    """Return a life with its interval in words; row: life_h, life_low_h, life_high_h, packings; the mass where
+    hours_per_mt is known.
     """
     words = f"{few_digits(row.life_h)} h"
     if np.isfinite(row.life_low_h):
         high = few_digits(row.life_high_h) if np.isfinite(row.life_high_h) else "no end"
-        words += f" ({few_digits(row.life_low_h)} to {high})"
+        words += f" ({few_digits(row.life_low_h)} to {high}{', one packing' if row.packings == 1 else ''})"
     return words + (f", {few_digits(row.life_h / hours_per_mt)} Mt" if np.isfinite(hours_per_mt) else "")
 
 
