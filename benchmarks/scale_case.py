@@ -69,6 +69,14 @@ CANDIDATES: dict[str, Candidate] = {
         OPEN,
         "both",
     ),
+    "one size, rolling as rvd, time step 0.1": Candidate(
+        {
+            "particle": {SIZES: [1.0], "mass_fractions": [1.0]},
+            "solver": {"rolling_friction": "rvd", "rayleigh_fraction": 0.1},
+        },
+        NUMERICAL,
+        "both, with 0.1 of the Rayleigh time instead of 0.4, which is shown for `own_spin` alone",
+    ),
     "sizes 0.5 to 1.5": Candidate(
         {"particle": {SIZES: [0.5, 0.75, 1.0, 1.25, 1.5], "mass_fractions": [0.1, 0.2, 0.4, 0.2, 0.1]}},
         OPEN,
