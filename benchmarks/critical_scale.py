@@ -282,12 +282,25 @@ def main() -> None:
     if not given.redraw:
         of_reference = max(given.packings, given.reference_packings)
         wanted = cases(given.scales, given.candidates, given.packings, of_reference)
+        if alone := without_reference(wanted, file):
+            parser.error(
+                f"--candidates: at scale {', '.join(f'{scale:g}' for scale in alone)} nothing is compared with"
+                f" {REFERENCE!r}, allowed is with it, or where {file} has it"
+            )
         if not given.finished:
             print(said_beforehand(wanted, given.folder), flush=True)
             write = partial(write_table, file, wanted, given.folder)
             simulate_all(wanted, given.folder, given.cores, write)
         write_table(file, wanted, given.folder)
     print(publish(given.output, pd.read_csv(file)), flush=True)
+
+
+def without_reference(wanted: Sequence[Case], file: Path) -> list[float]:
+    """Return the scales of runs for which neither these nor the table of earlier ones has the reference."""
+    known = pd.read_csv(file) if file.exists() else pd.DataFrame({"candidate": [], "particle_scale": []})
+    there = set(known.loc[known["candidate"] == REFERENCE, "particle_scale"])
+    there |= {case.scale for case in wanted if case.candidate == REFERENCE}
+    return sorted({case.scale for case in wanted} - there)
 
 
 def write_table(file: Path, wanted: Sequence[Case], folder: Path) -> None:

@@ -11,11 +11,13 @@ from benchmarks.critical_scale import (
     comparison,
     critical_scales,
     finished,
+    main,
     ordered,
     publish,
     remarks,
     simulate_all,
     where_it_lies,
+    without_reference,
 )
 from benchmarks.runs import BY, FIRST_SEED, with_earlier
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of
@@ -106,6 +108,20 @@ def test_the_reference_has_more_packings():
     found = cases((6,), (REFERENCE, OTHER), 1, 3)
     assert [case.candidate for case in found if case.surface == "convex"] == [REFERENCE, OTHER, REFERENCE, REFERENCE]
     assert len({case.seed for case in found}) == 3
+
+
+def test_a_scale_without_the_reference_is_refused_before_it_is_simulated(tmp_path, monkeypatch, capsys):
+    """Unless the table of earlier runs has it there."""
+    file = tmp_path / "critical_scale.csv"
+    rows().to_csv(file, index=False)
+    known = int(rows()["particle_scale"].iloc[0])
+    assert without_reference(cases((known, 5), (OTHER,), 1, 3), file) == [5]
+    assert without_reference(cases((5,), (OTHER, REFERENCE), 1, 3), file) == []
+    arguments = ["--scales", "5", "--candidates", OTHER, "--output", str(tmp_path)]
+    monkeypatch.setattr("sys.argv", ["critical_scale", *arguments])
+    with pytest.raises(SystemExit):
+        main()
+    assert "at scale 5 nothing is compared with" in capsys.readouterr().err
 
 
 def test_packings_are_what_is_repeated():
