@@ -140,7 +140,7 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
     """Return a row per particle scale and candidate: wear, convex over plain, its interval, and over the reference's.
 
     runs: as from `run_row`; those of candidates that there are no more are left out. A packing is what is repeated,
-    convex and plain sample together; one scatter is assumed for the candidates of a scale (`ratio_intervals`), and one
+    convex and plain sample together; one scatter is assumed for all candidates and scales (`ratio_intervals`), and one
     packing has no interval. Columns in the order of the page.
     """
     runs = runs[runs["candidate"].isin(CANDIDATES)]
@@ -162,24 +162,17 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
         *("share_of_bumps_percent", "force_over_plain", "slip_percent_convex", "slip_percent_plain"),
         *("velocity_percent_convex", "velocity_percent_plain"),
     ]
-    parts = []
-    for scale, of in pairs.groupby("particle_scale", sort=False):
-        told = ratio_intervals(of["candidate"].to_numpy(), of["wear_over_plain"].to_numpy(), REFERENCE, LEVEL)
-        names = {"ratio": "over_reference", "ratio_low": "over_reference_low", "ratio_high": "over_reference_high"}
-        ends = {"setting": "candidate", "mean": "wear_over_plain", "low": "ratio_low", "high": "ratio_high"}
-        told = told.rename(columns=names | ends)
-        means = of.groupby("candidate", sort=False)[kept].mean().reset_index()
-        means["processor_over_reference"] = means["processor_s"] / of_reference(means, "processor_s")
-        parts.append(told.merge(means, on="candidate").assign(particle_scale=scale))
-    table = pd.concat(parts, ignore_index=True)
+    told = ratio_intervals(pairs["candidate"], pairs["wear_over_plain"], REFERENCE, LEVEL, pairs["particle_scale"])
+    names = {"ratio": "over_reference", "ratio_low": "over_reference_low", "ratio_high": "over_reference_high"}
+    ends = {"mean": "wear_over_plain", "low": "ratio_low", "high": "ratio_high"}
+    told = told.rename(columns=names | ends | {"group": "particle_scale", "setting": "candidate"})
+    means = pairs.groupby(["particle_scale", "candidate"], sort=False)[kept].mean().reset_index()
+    of_reference = means[means["candidate"] == REFERENCE].set_index("particle_scale")["processor_s"]
+    means["processor_over_reference"] = means["processor_s"] / means["particle_scale"].map(of_reference)
+    table = told.merge(means, on=["particle_scale", "candidate"])
     kinds = table["candidate"].map({name: candidate.kind for name, candidate in CANDIDATES.items()})
     place = table["candidate"].map({name: number for number, name in enumerate(CANDIDATES)})
     return table.assign(kind=kinds, place=place).sort_values(["particle_scale", "place"], ignore_index=True)
-
-
-def of_reference(rows: pd.DataFrame, column: str) -> float:
-    """Return the value of the reference in a column of rows by candidate, NaN where it is not among them."""
-    return float(rows.loc[rows["candidate"] == REFERENCE, column].mean())
 
 
 def critical_scales(runs: pd.DataFrame, table: pd.DataFrame) -> pd.DataFrame:
@@ -248,7 +241,7 @@ def remarks(runs: pd.DataFrame, table: pd.DataFrame) -> list[str]:
         f"at most {packings[REFERENCE].max()} packings of {REFERENCE}, {others.max() if len(others) else 0} of the"
         " others;"
         + (
-            f" bars: {PERCENT * LEVEL:g} % intervals, {ASSUMED} candidates; without a bar: {UNKNOWN}"
+            f" bars: {PERCENT * LEVEL:g} % intervals, {ASSUMED} candidates and scales; without a bar: {UNKNOWN}"
             if table["ratio_low"].notna().any()
             else f" {UNKNOWN}"
         ),

@@ -7,7 +7,7 @@ few packings the degrees of freedom of all. A candidate of one packing has no in
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -23,22 +23,33 @@ def ratio_intervals(
     values: Sequence[float] | np.ndarray,
     reference: str,
     level: float = CONFIDENCE,
+    groups: Sequence[Hashable] | np.ndarray | None = None,
 ) -> pd.DataFrame:
-    """Return setting, packings, mean (geometric) with low and high, scatter (standard deviation of ln(value) between
-    packings), freedom (of it), and ratio to the reference with ratio_low and ratio_high, which it has not itself.
+    """Return group, setting, packings, mean (geometric) with low and high, scatter (standard deviation of ln(value)
+    between packings), freedom (of it), and ratio to the reference of the group with ratio_low and ratio_high, which it
+    has not itself.
 
     settings: (n,) labels; values: (n,) positive, one per packing. Packings of two settings are taken as independent.
-    Raises ValueError without a value of the reference.
+    groups: (n,) labels within which settings are compared, one for all where nothing is given; the scatter is that of
+        all groups
+    Raises ValueError where a group has no value of the reference.
     """
-    found = estimates(settings, values, log=True, one_scatter=True)
-    if reference not in found or not found[reference].packings:
-        raise ValueError(f"no run of {reference}, found are {', '.join(map(str, found)) or 'none'}")
+    of_group = [0] * len(values) if groups is None else list(groups)
+    found = estimates(list(zip(of_group, settings, strict=True)), values, log=True, one_scatter=True)
+    for group in dict.fromkeys(of_group):
+        if (group, reference) not in found or not found[group, reference].packings:
+            there = ", ".join(str(name) for at, name in found if at == group)
+            at = "" if groups is None else f" at {group}"
+            raise ValueError(f"no run of {reference}{at}, found are {there or 'none'}")
     rows = []
-    for name, each in found.items():
-        over = replace(difference(each, found[reference]), freedom=each.freedom)  # one scatter: its degrees of freedom
+    for (group, name), each in found.items():
+        # one scatter: its degrees of freedom
+        over = replace(difference(each, found[group, reference]), freedom=each.freedom)
         ends = over.interval(level) if name != reference else (math.nan, math.nan)
         scatter = each.error * math.sqrt(each.packings)
         freedom = each.freedom if each.known else 0
-        rows.append((name, each.packings, each.value, *each.interval(level), scatter, freedom, over.value, *ends))
-    columns = ["setting", "packings", "mean", "low", "high", "scatter", "freedom", "ratio", "ratio_low", "ratio_high"]
-    return pd.DataFrame(rows, columns=columns)
+        rows.append(
+            (group, name, each.packings, each.value, *each.interval(level), scatter, freedom, over.value, *ends)
+        )
+    columns = ["group", "setting", "packings", "mean", "low", "high", "scatter", "freedom"]
+    return pd.DataFrame(rows, columns=[*columns, "ratio", "ratio_low", "ratio_high"])

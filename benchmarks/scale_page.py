@@ -104,8 +104,8 @@ def scatter_words(table: pd.DataFrame) -> str:
         return "Every line is one packing, convex and plain sample in the same bed: the scatter is not known."
     return (
         "Low and high are 95 % intervals: what is repeated is the packing, convex and plain sample in the same bed, and"
-        f" {ASSUMED} candidates, {100.0 * table['scatter'].max():.1f} % of the ratio ({freedom} degrees of freedom)."
-        f" Without an interval: {UNKNOWN}."
+        f" {ASSUMED} candidates and scales, {100.0 * table['scatter'].max():.1f} % of the ratio ({freedom} degrees of"
+        f" freedom). Without an interval: {UNKNOWN}."
     )
 
 

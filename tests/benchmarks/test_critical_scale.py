@@ -139,6 +139,25 @@ def test_packings_are_what_is_repeated():
     assert table["kind"].to_list() == ["", "open"]
 
 
+def test_scales_share_one_scatter():
+    """Two packings that happen to agree at one scale leave it the scatter of the others: of logarithms 0 and 1 at two
+    candidates of scale 6 and none at scale 8 the variance is a half of 1/2; ratios are those of a scale.
+    """
+    apart, alike = (0.5, 0.5 * np.e), (2.0, 2.0)
+    at_6, at_8 = rows(((REFERENCE, apart), (OTHER, apart))), rows(((REFERENCE, alike), (OTHER, alike)))
+    table = comparison(pd.concat([at_6, at_8.assign(particle_scale=8)], ignore_index=True))
+    assert table["particle_scale"].tolist() == [6, 6, 8, 8] and (table["freedom"] == 4).all()
+    assert table["scatter"].to_numpy() == pytest.approx(np.full(4, 0.5))
+    assert table["over_reference"].to_numpy() == pytest.approx(np.ones(4))
+
+
+def test_a_scale_without_the_reference_has_no_ratio():
+    """It is named, beside what there is."""
+    alone = rows(((OTHER, (1.0,)),)).assign(particle_scale=8)
+    with pytest.raises(ValueError, match=f"no run of {REFERENCE} at 8, found are {OTHER}"):
+        comparison(pd.concat([rows(), alone], ignore_index=True))
+
+
 def test_the_sources_ratio_is_that_of_its_lines():
     """Eq 4.14 and 4.15 at scale 6: 1.48 over 0.998; the bumps' part of 0.5 + 0.5 has to be 1.97 times as large."""
     assert source_ratio(6) == pytest.approx(1.48 / 0.998)

@@ -16,7 +16,6 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
-from datetime import UTC, datetime
 from pathlib import Path
 
 from bulkwear.workflows.config.chosen import ROWS
@@ -24,20 +23,16 @@ from bulkwear.workflows.config.design import Study, load_study
 from bulkwear.workflows.config.packings import PACKINGS
 from bulkwear.workflows.engine.project import work_here
 from bulkwear.workflows.engine.provenance import code_of_cases
-from bulkwear.workflows.engine.state import STATE
 from bulkwear.workflows.engine.work import Work
 from bulkwear.workflows.forecast.forecast import forecast_table, hours_text, totals, work_of
 from bulkwear.workflows.forecast.rates import rates_file, read_rates
 from bulkwear.workflows.report.markdown import (
-    SECONDS_PER_HOUR,
     as_decided,
     fidelity_that_was_run,
     origin_of,
-    simulated_between,
     versions_in_folder,
     write_results,
 )
-from bulkwear.workflows.report.page import package_version
 from bulkwear.workflows.report.provenance_of_pages import (
     Origin,
     ResultsError,
@@ -45,14 +40,13 @@ from bulkwear.workflows.report.provenance_of_pages import (
     older,
     read_changes,
     read_origins,
-    recorded,
 )
-from bulkwear.workflows.report.simulated import Simulated, versions_of, warnings_of
+from bulkwear.workflows.report.simulated import warnings_of
 from bulkwear.workflows.report.spot_checks import read_checks
+from bulkwear.workflows.results.commands import WRITTEN, call, remake_by_command
 from bulkwear.workflows.results.index import mark, redo
 
 PROFILE = "workflows/profiles/default"
-WRITTEN = "written from"  # begins what is said of a page that was remade
 GO_ON = "What is begun goes on by the present code, and the page is of both; for one of the present code alone move"
 PENDING = "update pending"  # what Snakemake's summary plans for a file
 
@@ -135,53 +129,6 @@ def begun_by_older_code(folder: Path, study: Study, case: str) -> list[str]:
     """Return the sentences about what older code has simulated in a study's folder; none where no part is newer."""
     found = warnings_of(versions_in_folder(folder, study), code_of_cases((case,)), [case])
     return [*found, f"{GO_ON} {folder} away."] if found else []
-
-
-def remake_by_command(origin: Origin, docs: Path, run: bool) -> str:
-    """Run the command that makes a page, or return what it took and how to run it."""
-    if run:
-        call(["bash", "-c", origin.command])
-    if run or has_written(origin, docs):
-        keep_origin(docs, origin_of_command(origin))
-        return f"{WRITTEN} what `{origin.command}` simulated"
-    hours = "its cost was not kept" if origin.core_hours is None else f"it took {origin.core_hours:.2g} core hours"
-    return f"no study but a command, {hours}: {redo(origin)}"
-
-
-def states_of(origin: Origin) -> list[Path]:
-    """Return the states of the simulations that a command keeps."""
-    found = Path(origin.runs).glob(f"**/cycle_*/{STATE}") if origin.runs else ()
-    return [path for path in found if "superseded" not in path.parts and not path.parent.suffix]
-
-
-def has_written(origin: Origin, docs: Path) -> bool:
-    """Return whether a command has written its page since the last of its simulations that are there."""
-    newest = max((path.stat().st_mtime for path in states_of(origin)), default=None)
-    return newest is not None and newest <= (docs / origin.page).stat().st_mtime
-
-
-def origin_of_command(origin: Origin) -> Origin:
-    """Return where the page of a command that was run comes from: of its simulations, or of now where it keeps none."""
-    states = states_of(origin)
-    if not states:
-        now = datetime.now(UTC)
-        found = [Simulated("", (origin.page,), code_of_cases((origin.case,)), (f"{now:%Y-%m-%d}",) * 2)]
-        hours, when = None, (f"{now:%Y-%m-%d %H:%M}",) * 2
-    else:
-        found = versions_of(dict.fromkeys(path.parents[1] for path in states), within=Path(origin.runs))
-        costs = [json.loads(path.read_text()).get("cost", {}) for path in states]
-        spent = [cost["processor_s"] for cost in costs if "processor_s" in cost]  # bulk tests keep wall time alone
-        hours, when = round(sum(spent) / SECONDS_PER_HOUR, 2) if spent else None, simulated_between(states)
-    by = package_version()
-    return Origin(origin.page, origin.case, simulated=when, versions=recorded(found), page_by=by, core_hours=hours)
-
-
-def call(command: Sequence[str]) -> None:
-    """Run a command to its end, its words on standard error. Raises RemakeError."""
-    beside = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
-    done = subprocess.run(command, stdout=sys.stderr, env={**os.environ, "PATH": beside})
-    if done.returncode != 0:
-        raise RemakeError(f"{' '.join(command)} ended with exit code {done.returncode}.")
 
 
 def remake(docs: Path, page: str, run: bool, cores: int) -> None:

@@ -6,6 +6,7 @@ import subprocess
 from dataclasses import replace
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from bulkwear.workflows.config.design import list_studies, load_study
@@ -19,9 +20,13 @@ from bulkwear.workflows.report.provenance_of_pages import (
     older,
     read_changes,
     read_origins,
+    recorded,
+    versions_in,
     with_banner,
     write_origins,
 )
+from bulkwear.workflows.report.simulated import Simulated, version_name
+from bulkwear.workflows.results import commands
 from bulkwear.workflows.results import remake as module
 from bulkwear.workflows.results.index import index_page
 from tests import REPOSITORY
@@ -212,14 +217,37 @@ def test_a_page_of_a_command_is_renewed_from_its_simulations(done, tmp_path):
     state.write_text(json.dumps({PROVENANCE: code, "cost": {"processor_s": 3600.0}}))
     (tmp_path / origin.page).write_text(TEXT)
     write_origins(tmp_path, [origin])
-    assert "written from" in module.remake_by_command(origin, tmp_path, False)
+    assert "written from" in commands.remake_by_command(origin, tmp_path, False)
     (kept,) = read_origins(tmp_path)
     assert (kept.core_hours, kept.versions[0]["runs"], kept.command) == (1.0, ["one"], "make it")
     assert older(kept, [], code_of_cases(("pin_on_disc",))) == []
     newer = (tmp_path / origin.page).stat().st_mtime + 1.0
     os.utime(state, (newer, newer))
-    assert "its cost was not kept" in module.remake_by_command(origin, tmp_path, False)
+    assert "its cost was not kept" in commands.remake_by_command(origin, tmp_path, False)
     assert done == []
+
+
+def test_earlier_versions_stay_with_their_rows(tmp_path):
+    """Of a table to which another clone's runs were added both versions stand; one whose rows are gone does not."""
+    code = code_of_cases(("pin_on_disc",)) | {"date": "2026-11-22T10:00:00Z"}
+    earlier, gone = (code | {"commit": commit, "changed": False} for commit in ("aaaaaaaaaaaa", "bbbbbbbbbbbb"))
+    now = Simulated(version_name(code), ("new", "again"), code, ("2026-11-22", "2026-11-22"))
+    before = [
+        Simulated(version_name(each), runs, each, ("2026-11-20", "2026-11-21"))
+        for each, runs in ((earlier, ("old", "again")), (gone, ("lost",)))
+    ]
+    page = replace(OLD, page="candidates_results.md", simulated=("2026-11-20 10:00", "2026-11-21 10:00"))
+    rows = {commands.BY: [now.name, now.name, before[0].name], commands.COST: [1800.0, 1800.0, 3600.0]}
+    pd.DataFrame(rows).to_csv(tmp_path / "candidates.csv", index=False)
+    here = replace(page, versions=recorded([now]), simulated=("2026-11-22 10:00", "2026-11-22 11:00"), core_hours=1.0)
+    found = commands.with_earlier(here, replace(page, versions=recorded(before)), tmp_path)
+    assert [(each.name, each.runs) for each in versions_in(found)] == [
+        (now.name, ("new", "again")),
+        (before[0].name, ("old",)),
+    ]
+    assert found.simulated == ("2026-11-20 10:00", "2026-11-22 11:00") and found.core_hours == 2.0
+    (tmp_path / "candidates.csv").unlink()
+    assert commands.with_earlier(here, replace(page, versions=recorded(before)), tmp_path) == here
 
 
 def test_faults_of_a_page_are_told_beside_the_others(monkeypatch, tmp_path, capsys):
