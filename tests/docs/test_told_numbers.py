@@ -6,6 +6,7 @@ import pandas as pd
 import yaml
 
 from benchmarks.rolling_page import MODELS
+from benchmarks.scale_page import source_ratio
 from bulkwear.workflows.engine.beds import (
     DENSITY_TOLERANCE,
     LEVEL_TOLERANCE,
@@ -237,22 +238,39 @@ def test_what_the_best_pattern_wears():
 
 
 def test_why_the_critical_scale_differs():
-    """Ratios of convex to plain wear with one size of particles, with rolling on relative spin, and with both."""
+    """Ratios of convex to plain wear with one size of particles and other rolling models, beside the source's lines."""
     page, key = told("particle_size.md"), ["candidate", "particle scale"]
     found = rows("critical_scale_results.md", "particle scale", "candidate", "kind").set_index(key)
-    one, spin, both = (
+    one, both, longer = (
         found.loc[each]
-        for each in ("one size of particles", "rolling on relative spin", "one size, rolling on relative spin")
+        for each in ("one size of particles", "one size, rolling as rvd", "one size, rolling as rvd, time step 0.1")
+    )
+    ratio, source = both["wear over plain"].astype(float), [f"{source_ratio(scale):.2f}" for scale in (3, 4, 5)]
+    assert (
+        "wears {:.2f}, {:.2f} and {:.2f} of the plain one at scales 3, 4 and 5".format(*ratio[["3", "4", "5"]]) in page
+    )
+    assert "by the source's lines {}, {} and {}.".format(*source) in page
+    assert f"to {ratio['8']:.2f} at 8, the source's to {source_ratio(8):.2f}" in page
+    critical = rows("critical_scale_results.md", "candidate", "scales", "packings", "critical scale").set_index(
+        "candidate"
+    )
+    at = critical.loc["one size, rolling as rvd"]
+    low, high = at["where"].split(" to ")
+    assert (
+        f"critical scale is {float(at['critical scale']):.1f} ({float(low):.1f} to {float(high):.1f}, by the forms"
+        in page
     )
     at_4 = one.loc["4", ["over reference", "over reference low", "over reference high"]].astype(float)
-    assert f"it is {float(one.loc['3', 'over reference']):.1f} times as large at scale 3 (one packing)" in page
-    assert "{:.1f} times ({:.1f} to {:.1f}) at scale 4".format(*at_4) in page
-    assert "{:.2f}, {:.2f}, {:.2f} and {:.2f} at 3, 4, 6 and 8".format(*one["wear over plain"].astype(float)) in page
-    off = 100.0 * (1.0 - spin["over reference"].astype(float))
-    assert "takes {:.0f} and {:.0f} % off the ratio at 6 and 8 (of {:.0f} % at 4".format(*off[["6", "8", "4"]]) in page
-    assert float(spin.loc["4", "over reference high"]) > 1.0  # what is not told at 4
-    flat = both["wear over plain"].astype(float)
-    assert f"the ratio is {flat.min():.2f} to {flat.max():.2f} at 4 to 8" in page
+    assert "the ratio {:.1f} times ({:.1f} to {:.1f}) as large at scale 4".format(*at_4) in page
+    alone = one["wear over plain"].astype(float)
+    assert "{:.2f} (one packing), {:.2f}, {:.2f} and {:.2f} at 3, 4, 6 and 8".format(*alone) in page
+    off = [
+        100.0 * (1.0 - float(found.loc[(f"rolling {how}", "8"), "over reference"]))
+        for how in ("as rvd", "on relative spin")
+    ]
+    assert "takes {:.0f} and {:.0f} % off the ratio at 8".format(*off) in page
+    step = longer.loc["6", ["wear over plain", "ratio low", "ratio high"]].astype(float)
+    assert "at scale 6 is {:.2f} ({:.2f} to {:.2f}), where it was {:.2f}".format(*step, ratio["6"]) in page
 
 
 def test_what_decisions_say_of_softness_and_time_steps():
