@@ -25,11 +25,11 @@ from typing import Any
 
 import pandas as pd
 
-from benchmarks.plots.figures import ratio_by_candidate
+from benchmarks.plots.critical_scale import ratio_by_candidate, ratio_by_scale
 from benchmarks.ratios import ASSUMED, ratio_intervals
 from benchmarks.runs import BY, at_least_one, attempted, simulated_by, simulated_run, with_bed, with_earlier
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of, particle_steps
-from benchmarks.scale_page import results_page, source_ratio
+from benchmarks.scale_page import CURVES, FIGURE, results_page, source_ratio
 from benchmarks.window_case import PARTICLE_STEPS_PER_SECOND
 from bulkwear.postproc.plots.style import save
 from bulkwear.postproc.statistics.crossing import FEWEST_PLACES, Crossing, crossing
@@ -255,7 +255,9 @@ def publish(output: Path, runs: pd.DataFrame) -> str:
     page = results_page(table, critical_scales(runs, table), runs)
     (output / "critical_scale_results.md").write_text(page, encoding="utf-8")
     source = {scale: source_ratio(scale) for scale in table["particle_scale"]}
-    save(ratio_by_candidate(table, source, remarks(runs, table)), output / "critical_scale.png")
+    save(ratio_by_candidate(table, source, remarks(runs, table)), output / FIGURE)
+    if (table.groupby("candidate").size() >= FEWEST_PLACES).any():
+        save(ratio_by_scale(table, source, remarks(runs, table)), output / CURVES)
     return page
 
 

@@ -20,6 +20,7 @@ from bulkwear.workflows.engine.derived import youngs_modulus
 from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.markdown import markdown, prose
 
+FIGURE, CURVES = "critical_scale.png", "critical_scale_curves.png"
 LINES = Path("config/published/particle_size_lines.csv")
 SCALES = (1, 2, 4, 6, 8)
 EDGE = 1e-3  # m, of the triangles, as on the source's disc; those of its sample are not told
@@ -121,6 +122,7 @@ def critical_part(critical: pd.DataFrame) -> list[str]:
             " the source has about 4."
         ),
         markdown(critical[["candidate", "scales", "packings", "critical_scale", "where", "forms"]]),
+        f"![Wear, convex over plain, against the particle scale, of candidates of several scales]({CURVES})",
     ]
 
 
@@ -148,7 +150,7 @@ def results_page(table: pd.DataFrame, critical: pd.DataFrame, runs: pd.DataFrame
             " what it publishes, changed only to see how much hangs on it."
         ),
         markdown(table[[*names, *ratio]]),
-        "![Wear, convex over plain, of every candidate](critical_scale.png)",
+        f"![Wear, convex over plain, of every candidate]({FIGURE})",
         prose(
             "Wear per metre of travel, and its two parts over the plain sample's. Force: mean normal force, convex over"
             " plain. Slip: sliding work per metre over the mean normal force, which is the velocity at the contacts"

@@ -26,8 +26,6 @@ ROOM = 1.2  # -, of the panels over the largest mean
 NARROW = 0.15  # -, of the panel of ratios below and above 1, at least
 PACKING_LINE = {"linewidth": 0.6, "alpha": 0.45}  # of a single packing
 SOURCE_COLOUR = "#009E73"
-LINE_HEIGHT = 0.19  # inches
-LEGEND_AND_REMARKS = 2.4  # inches
 TITLES = {
     "conserving": "conserving, patch spread twice",
     "spread_once": "conserving, patch spread once",
@@ -164,48 +162,4 @@ def wear_side_by_side(work: pd.DataFrame, table: pd.DataFrame, block: float, rem
         ratios.set(ylim=(1.0 - furthest, 1.0 + furthest), xlabel="Cheaper in particle steps (-)")
         ratios.set_title("Wear over that of the full bed (-)", loc="left", fontsize=SMALLEST_FONT)
     figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
-    return figure
-
-
-KINDS = {  # what the source says of a thing -> words, colour, marker
-    "": ("the study with the source's pair", "black", "D"),
-    "open": ("left open by the source", BLUE, "o"),
-    "ours": ("a choice of the simulation", OTHER_COLOUR, "^"),
-    "published": ("published, changed to see what it does", ORANGE, "s"),
-}
-
-
-def ratio_by_candidate(table: pd.DataFrame, source: Mapping[int, float], remarks: Sequence[str]) -> Figure:
-    """Draw wear over plain of every candidate with its interval, where there is one; a panel per particle scale.
-
-    table: candidate, kind (of KINDS), particle_scale, wear_over_plain, ratio_low, ratio_high (NaN: not known); the
-        first line of a scale is the reference
-    source: the source's ratio by particle scale
-    """
-    names = list(dict.fromkeys(table["candidate"]))
-    figure = new_figure(remarks, LEGEND_AND_REMARKS + LINE_HEIGHT * len(names))
-    scales = list(dict.fromkeys(table["particle_scale"]))
-    panels = figure.subplots(1, len(scales), sharey=True, squeeze=False)[0]
-    for axes, scale in zip(panels, scales, strict=True):
-        rows = table[table["particle_scale"] == scale]
-        axes.axvline(1.0, color="#a0a0a0", linewidth=0.8)
-        first = rows["wear_over_plain"].iloc[0]
-        axes.axvline(first, color="black", linewidth=0.8, linestyle=":", label="as the first line")
-        axes.axvline(source[scale], color=SOURCE_COLOUR, linewidth=1.4, linestyle="--", label="Yan 2022, Eq 4.14, 4.15")
-        for kind, (words, shade, marker) in KINDS.items():
-            some = rows[rows["kind"] == kind]
-            if some.empty:
-                continue
-            places = [names.index(name) for name in some["candidate"]]
-            value, low, high = (some[name].to_numpy() for name in ("wear_over_plain", "ratio_low", "ratio_high"))
-            axes.hlines(places, low, high, color=shade, linewidth=0.8)
-            axes.plot(value, places, marker, color=shade, markersize=5.0, label=words)
-        largest = np.nanmax([source[scale], *rows["wear_over_plain"], *rows["ratio_high"]])
-        axes.set(xlim=(0.0, 1.08 * largest))
-        axes.set_title(f"particle scale {scale:g}", loc="left")
-        axes.grid(axis="y", visible=False)
-    panels[0].set_xlabel("Wear, convex over plain (-)", loc="left")  # below each panel the words would meet
-    panels[0].set_yticks(range(len(names)), names)
-    panels[0].set_ylim(len(names) - 0.5, -0.5)
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     return figure

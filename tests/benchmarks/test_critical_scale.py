@@ -19,6 +19,7 @@ from benchmarks.critical_scale import (
     where_it_lies,
     without_reference,
 )
+from benchmarks.plots.critical_scale import ratio_by_scale
 from benchmarks.runs import BY, FIRST_SEED, with_earlier
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of
 from benchmarks.scale_page import conclusion, needed_factor, source_ratio, touched_by_scale
@@ -158,6 +159,21 @@ def test_a_scale_without_the_reference_has_no_ratio():
         comparison(pd.concat([rows(), alone], ignore_index=True))
 
 
+def test_candidates_of_several_scales_are_drawn_against_the_scale(tmp_path, monkeypatch):
+    """A line for each of them beside the source's; a candidate of one scale is in the other figure alone."""
+    monkeypatch.setattr(scale_page, "SPHERES", 20)
+    scales = [rows(((REFERENCE, (0.1 * scale, 0.11 * scale)),)).assign(particle_scale=scale) for scale in (4, 6, 8)]
+    runs = pd.concat([*scales, rows(((OTHER, (1.0,)),))], ignore_index=True)
+    page, table = publish(tmp_path, runs), comparison(runs)
+    assert "(critical_scale_curves.png)" in page and (tmp_path / "critical_scale_curves.png").is_file()
+    figure = ratio_by_scale(table, {scale: source_ratio(scale) for scale in (4, 6, 8)}, ["tiny"])
+    lines = {line.get_label(): line for line in figure.axes[0].get_lines()}
+    assert REFERENCE in lines and OTHER not in lines
+    assert lines["Yan 2022, Eq 4.14, 4.15"].get_ydata() == pytest.approx([source_ratio(scale) for scale in (4, 6, 8)])
+    of_reference = table[table["candidate"] == REFERENCE]["wear_over_plain"]
+    assert lines[REFERENCE].get_ydata() == pytest.approx(of_reference.to_numpy())
+
+
 def test_the_sources_ratio_is_that_of_its_lines():
     """Eq 4.14 and 4.15 at scale 6: 1.48 over 0.998; the bumps' part of 0.5 + 0.5 has to be 1.97 times as large."""
     assert source_ratio(6) == pytest.approx(1.48 / 0.998)
@@ -172,6 +188,7 @@ def test_page_and_figure(tmp_path, monkeypatch):
     assert (tmp_path / "critical_scale_results.md").read_text() == page
     assert (tmp_path / "critical_scale.png").stat().st_size > 10_000
     assert f"| 6 | {OTHER} | open | 1 | 1 |" in page and "reached by none of them" in page
+    assert not (tmp_path / "critical_scale_curves.png").exists()  # one scale
     single = rows(((REFERENCE, (0.5,)), (OTHER, (1.5,))))
     table = comparison(single)
     assert table["ratio_low"].isna().all()
