@@ -237,6 +237,14 @@ def test_what_the_best_pattern_wears():
     assert f"R5 wears {r5} of plain there, and {interval(*long)} on the source's sample" in page
 
 
+def velocity_at_8(study):
+    """What a study found of the bed's relative velocity over the convex sample at scale 8, in words."""
+    found = table(f"published/{study}_results_quick.csv")
+    return found[(found["finding"] == "relative velocity, convex") & found["published"].str.contains("scale 8")][
+        "found"
+    ].iloc[0]
+
+
 def test_why_the_critical_scale_differs():
     """Ratios of convex to plain wear with one size of particles and other rolling models, beside the source's lines."""
     page, key = told("particle_size.md"), ["candidate", "particle scale"]
@@ -269,6 +277,19 @@ def test_why_the_critical_scale_differs():
         for how in ("as rvd", "on relative spin")
     ]
     assert "takes {:.0f} and {:.0f} % off the ratio at 8".format(*off) in page
+    key = ["setting", "particle scale"]
+    alike = rows("particle_size_one_size_results_quick.md", *key, "layers of particles").set_index("setting")
+    at_4, at_12 = (
+        alike.loc[row, ["wear over plain", "interval low", "interval high"]].astype(float) for row in ("S4", "S12")
+    )
+    assert "{:.2f} ({:.2f} to {:.2f}) at scale 4, ".format(*at_4) in page
+    assert "{:.2f} ({:.2f} to {:.2f}) at 12".format(*at_12) in page
+    velocity, three = (
+        [float(number) for number in re.findall(r"[\d.]+", each.partition(":")[2])]
+        for each in (velocity_at_8("particle_size_one_size"), velocity_at_8("particle_size"))
+    )
+    of_both = "goes at {:.0f} % of its speed at scale 8 ({:.0f} to {:.0f})".format(velocity[0], *velocity[2:4])
+    assert f"{of_both}, where three sizes have {three[0]:.0f}." in page
     step = longer.loc["6", ["wear over plain", "ratio low", "ratio high"]].astype(float)
     assert "at scale 6 is {:.2f} ({:.2f} to {:.2f}), where it was {:.2f}".format(*step, ratio["6"]) in page
 
