@@ -430,6 +430,11 @@ EFFORT = [
         "sampling.patch_mm is 44",
         "at least 45 mm, parts.plate.edge_mm",
     ),
+    (
+        {"wear": {"patch": "radius", "patch_radius_mm": 30.1}},
+        "wear.patch_radius_mm is 30.1",
+        "at most 30 mm, half of sampling.patch_mm: a wider patch spreads the wear of each contact over several",
+    ),
     ({"sampling": {"fewest_blocks": 4}}, "sampling.fewest_blocks is 4", "at most 3, sampling.most_blocks"),
     ({"sampling": {"block_s": 0.001}}, "sampling.block_s is 0.001", "s, 10 contacts of the largest particles"),
     ({"sampling": {"block_s": 1000}}, "sampling.block_s is 1000", "s in up to 8 blocks: it takes"),
@@ -552,6 +557,8 @@ def test_a_drawing_that_is_not_there_is_named_with_its_part(tmp_path):
         STILL,
         {**STILL, "outlets": {"side": {"centre_mm": [400, 0, 345], "normal": [1, 0, 0], "size_mm": [900, 800]}}},
         {"sampling": {"pictures_per_block": 7}},
+        {"wear": {"patch": "radius", "patch_radius_mm": 30}},
+        {"wear": {"patch_radius_mm": 100}},  # which counts for nothing: the patch is the simulated one
         *(
             {"outlets": {"other": {**SETTINGS["outlets"]["below"], "centre_mm": centre}}}
             for centre in ([0, 0, -347], [900, 0, -345], [900, 0, 180])
