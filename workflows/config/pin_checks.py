@@ -9,7 +9,7 @@ import math
 
 from bulkwear.postproc.wear.kernels import is_per_impact
 from bulkwear.postproc.wear.laws import LAWS
-from bulkwear.workflows.config.run_checks import SHOWN, Check, CheckedRun, Fault
+from bulkwear.workflows.config.run_checks import SHOWN, Check, CheckedRun, Fault, patch_too_wide
 
 # -, of a pin's overlap with the flat disc, over its radius: there its contact is half as wide as itself, beyond what
 # Hertz' parabola describes, and soon it is through the surface; studies have 0.014.
@@ -65,6 +65,16 @@ def groove_taken_up(run: CheckedRun) -> Fault | None:
     )
 
 
+def patch_on_disc(run: CheckedRun) -> Fault | None:
+    """A patch of a pin whose radius is given is no wider than the ring of the disc that is meshed."""
+    if "pin" not in run.parameters:
+        return None
+    disc = run.parameters["disc"]
+    beside = disc["radius_m"] - disc["track_radius_m"]
+    reason = "disc.radius_mm less disc.track_radius_mm: a wider patch spreads the wear beyond the disc"
+    return patch_too_wide(run, beside, reason) if beside > 0.0 else None  # a track beside its disc is told as that
+
+
 def _only_impacts(law: str | None) -> bool:
     """Return whether a law counts nothing but impacts."""
     declared = LAWS.get(law)
@@ -73,4 +83,9 @@ def _only_impacts(law: str | None) -> bool:
     return all(is_per_impact(name) for name in declared.kernels)
 
 
-PIN_RANGE_CHECKS: tuple[Check, ...] = (pin_rests_on_disc, pin_law_counts_sliding, groove_taken_up)
+PIN_RANGE_CHECKS: tuple[Check, ...] = (
+    pin_rests_on_disc,
+    pin_law_counts_sliding,
+    patch_on_disc,
+    groove_taken_up,
+)

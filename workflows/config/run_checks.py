@@ -188,6 +188,20 @@ def element_resolves_sample(run: CheckedRun) -> Fault | None:
     )
 
 
+def patch_too_wide(run: CheckedRun, most: float, reason: str) -> Fault | None:
+    """Return the fault of a patch whose radius is given and above a length (m)."""
+    if reaches(most, run.parameters["wear"].get("patch_radius_m", 0.0)):
+        return None
+    return "wear.patch_radius_mm", f"at most {shown_inside(most, -1)}, {reason}"
+
+
+def patch_within_sample(run: CheckedRun) -> Fault | None:
+    """A patch whose radius is given is no wider than the sample's shorter side."""
+    shorter = min(run.parameters["sample"][side] for side in ("width_m", "length_m"))
+    reason = "half of the sample's shorter side: a wider patch spreads the wear of each contact over all of the sample"
+    return patch_too_wide(run, 0.5 * shorter, reason)
+
+
 def deeper_than(run: CheckedRun, length: str) -> Fault | None:
     """Return the fault of a pattern at least as deep as a length of the sample."""
     pattern, room = pattern_of(run.parameters["pattern"]), run.parameters["sample"][f"{length}_m"]

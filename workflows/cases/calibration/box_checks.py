@@ -24,7 +24,6 @@ LEAST_OPENING_DIAMETERS = (
 LEAST_EXTENTS = 3.0  # -, of a box between walls and of an opening, in largest extents: fewer stand as an arch
 LEAST_PERIODIC_EXTENTS = 2.0  # -, of a periodic slice: in a narrower one a particle hangs between another and its image
 LEAST_FILLED, MOST_FILLED = 0.5, 1.5  # -, of a filling by its bulk density, wider than beds are loose and dense
-STEEPEST = 1.0  # -, slope of what stays above an opening, for the least that flows out; heaps of calibrations were less
 FASTEST_OUTFLOW = 0.75  # -, over the time that it is estimated to take. Measured: 0.91
 LEAST_FLOOR_DIAMETERS = 2.0 * END_DIAMETERS + LEAST_COLUMNS * CELL_DIAMETERS  # -, of a slope that can be measured
 MOST_PARTICLES = 10_000_000  # of a test, which a single core simulates: they take it months
@@ -116,21 +115,6 @@ def floor_holds_slopes(run: CheckedRun) -> Fault | None:
     )
 
 
-def lower_box_holds_outflow(run: CheckedRun) -> Fault | None:
-    """The lower box of a draw-down test holds what flows through a slot; else it dams the slot, as an arch does."""
-    test = _asked(run).get(boxes.DRAW_DOWN)
-    if test is None or test["box"]["opening"] != boxes.SLOT:
-        return None
-    length, height = test["box"]["length_m"], test["box"]["fill_height_m"]
-    side = (length - boxes.opening_length(test)) / 2.0
-    foot = min(side, height / STEEPEST)
-    stays = STEEPEST * foot * (side - foot / 2.0)  # on one side, m2 across
-    least = height - 2.0 * stays / length
-    if reaches(test["box"]["lower_height_m"], least):
-        return None
-    return "draw_down.lower_height_mm", f"at least {enough(1e3 * least)}, the level of what flows out of the upper box"
-
-
 def drag_makes_it_slide(run: CheckedRun) -> Fault | None:
     """A plate is drawn at least six median diameters: the bed slides on it in the second half, which is measured."""
     least = LEAST_DRAG_DIAMETERS * run.parameters["particle"]["median_diameter_m"]
@@ -188,7 +172,6 @@ BOX_CHECKS: tuple[Check, ...] = (
     box_wide_enough,
     opening_lets_particles_pass,
     floor_holds_slopes,
-    lower_box_holds_outflow,
     drag_makes_it_slide,
     mass_fills_the_box,
     particles_within_reason,

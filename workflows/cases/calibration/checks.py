@@ -7,6 +7,7 @@ response that is none. Such cells say nothing here.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,11 +26,13 @@ OUR_PAIRS = ("found_first", "recommended")  # names that a calibration gives to 
 TIMES_FLOWING = (
     10.0  # -, of an estimated discharge time, either way. Published for one slot: 1 to 2.3 (gravel_pairs.csv)
 )
+STEEPEST = 1.0  # -, slope of what stays above an opening, for the least that flows out; heaps of calibrations were less
 ANGLES = {
     "shear_angle_deg": "fill_height",
     "draw_down_shear_angle_deg": "fill_height",
     "repose_angle_deg": "lower_height",
 }
+STRAIGHT_UP = 90.0  # degrees
 WALL_ANGLE, WALL_FRICTION = "wall_friction_angle_deg", "wall_material.contact.sliding_friction"
 
 
@@ -109,6 +112,42 @@ def slopes_can_be_measured(run: CheckedRun) -> Fault | None:
     return None
 
 
+def lower_box_holds_heap(run: CheckedRun) -> Fault | None:
+    """The lower box of a draw-down test holds the heap of what flows through a slot, as steep as it was measured, or
+    level; else it dams the slot, as an arch does.
+    """
+    if boxes.DRAW_DOWN not in run.settings["calibration"]["tests"]:
+        return None
+    test = boxes.test_of(run.parameters, boxes.DRAW_DOWN, {}, 0)
+    rows = {row.response: row for row in _simulated(run)}
+    stays = _slope(rows.get("draw_down_shear_angle_deg"), 1.0, STEEPEST)
+    least, level = _heap_height(test, stays, _slope(rows.get("repose_angle_deg"), -1.0, 0.0))
+    if test["box"]["opening"] != boxes.SLOT or reaches(test["box"]["lower_height_m"], least):
+        return None
+    dam = "what" if least == level else "the heap, as steep as the measured repose_angle_deg, of what"
+    return "draw_down.lower_height_mm", f"at least {enough(1e3 * least)}: in a lower box {dam} flows out dams the slot"
+
+
+def _slope(row: MeasuredRow | None, deviations: float, otherwise: float) -> float:
+    """Return the slope (-) of a measured angle so many deviations on, another one where none was measured."""
+    angle = row.value + deviations * row.deviation if row else math.nan
+    return math.tan(math.radians(angle)) if 0.0 < angle < STRAIGHT_UP else otherwise
+
+
+def _heap_height(test: Mapping[str, Any], stays: float, heap: float) -> tuple[float, float]:
+    """Return how high (m) what flows through a slot lies in the lower box at the slot's edges, and how high if level.
+
+    stays, heap: slopes (-) of what stays on both sides of the slot, and of the heap under it
+    """
+    length, height, opening = test["box"]["length_m"], test["box"]["fill_height_m"], boxes.opening_length(test)
+    side = (length - opening) / 2.0
+    foot = min(side, height / stays)
+    flows = length * height - 2.0 * stays * foot * (side - foot / 2.0)  # m2 across
+    level, rise = flows / length, heap * length / 4.0
+    peak = level + rise if level >= rise else math.sqrt(heap * flows)  # it reaches the walls, or it does not
+    return max(level, peak - heap * opening / 2.0), level
+
+
 def discharge_is_of_the_opening(run: CheckedRun) -> Fault | None:
     """A measured discharge time is one that the opening may have, and no longer than what is simulated."""
     rest = run.parameters["rest"]
@@ -165,6 +204,7 @@ TABLE_CHECKS: tuple[Check, ...] = (
     names_have_no_blanks,
     deviations_are_of_values,
     slopes_can_be_measured,
+    lower_box_holds_heap,
     discharge_is_of_the_opening,
     range_holds_wall_friction,
     pairs_are_numbers,

@@ -14,7 +14,14 @@ from bulkwear.workflows.cases.equipment.parameters import REPORTS, SECONDS_PER_H
 from bulkwear.workflows.cases.equipment.placing import largest_diameter
 from bulkwear.workflows.cases.equipment.room_checks import ROOM_CHECKS, T_PER_H
 from bulkwear.workflows.config.law_settings import parameters_schema
-from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault, millimetres, physical_modulus_known
+from bulkwear.workflows.config.run_checks import (
+    Check,
+    CheckedRun,
+    Fault,
+    millimetres,
+    patch_too_wide,
+    physical_modulus_known,
+)
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.validation import allowed_text
 from bulkwear.workflows.engine.derived import whole_steps
@@ -227,6 +234,12 @@ def patches_large_enough(run: CheckedRun) -> Fault | None:
     return "sampling.patch_mm", f"at least {millimetres(least)}, {reason}"
 
 
+def contacts_within_patches(run: CheckedRun) -> Fault | None:
+    """A patch of a contact whose radius is given is no wider than the area patches that lives are told of."""
+    reason = "half of sampling.patch_mm: a wider patch spreads the wear of each contact over several of those areas"
+    return patch_too_wide(run, 0.5 * run.parameters["sampling"]["patch_m"], reason)
+
+
 def blocks_in_order(run: CheckedRun) -> Fault | None:
     """The most blocks are not fewer than the fewest."""
     sampling = run.parameters["sampling"]
@@ -330,6 +343,7 @@ EQUIPMENT_CHECKS: tuple[Check, ...] = (
     one_change_out_rule,
     liner_left_to_wear,
     patches_large_enough,
+    contacts_within_patches,
     blocks_in_order,
     blocks_long_enough,
     *COUNTED_MOTION_CHECKS,

@@ -28,6 +28,7 @@ from bulkwear.workflows.cases.equipment.bodies import closed_faces, diagonal, fi
 from bulkwear.workflows.cases.equipment.checks import LEFT_TO_WEAR, thin_phrase
 from bulkwear.workflows.cases.equipment.decks import domain, largest_cell, longest_s, moving_mesh
 from bulkwear.workflows.cases.equipment.drawings import drawing
+from bulkwear.workflows.cases.equipment.drum_checks import check_drums
 from bulkwear.workflows.cases.equipment.motions import motion_of
 from bulkwear.workflows.cases.equipment.placing import filling_box, placing_room
 from bulkwear.workflows.cases.equipment.stream_checks import check_stream
@@ -63,6 +64,7 @@ def check_machine(run: Parameters, surface: SurfaceMesh) -> None:
     for part, mesh in zip(run["parts"], parts, strict=True):
         _check_within(run, surface, part, mesh)
         _check_speed(run, part, mesh)
+    check_drums(run["parts"], parts)
     _check_feed_speed(run)
     _check_inlet(run, parts)
     check_stream(run, parts)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.equipment.decks import FASTEST, SHELL_SHARE, room_round
 from bulkwear.workflows.cases.equipment.motion_checks import TINY
+from bulkwear.workflows.cases.equipment.parameters import start_up_blocks
 from bulkwear.workflows.cases.equipment.placing import (
     LEAST_SIDE_DIAMETERS,
     filling_box,
@@ -30,6 +32,7 @@ LEAST_SLICE_DIAMETERS = 2.5
 TOUCHING = 1e-6  # m; ends that are equal in the drawing and in the settings
 LOOKING_UP = 0.5  # -, z of the unit normal of a rectangle that looks up
 T_PER_H = 3.6  # of a kg/s
+MILLISECONDS = 1e3  # of a s, to which a bound in a sentence is rounded up
 AXES = "xyz"
 
 
@@ -73,6 +76,23 @@ def outlets_are_reached(run: CheckedRun) -> Fault | None:
         reason = "as high as material gets where no part moves"
         return f"outlets.{next(iter(outlets))}.centre_mm", f"a place below z = {millimetres(highest)}, {reason}"
     return None
+
+
+def starts_up_till_it_leaves(run: CheckedRun) -> Fault | None:
+    """A machine that is empty at first, and where nothing moves, starts up for as long as a fall to an outlet takes."""
+    parameters, inlet, outlets = run.parameters, run.parameters["inlet"], run.parameters["outlets"] or {}
+    if not inlet or parameters["filling"] or not outlets or any(part["motion"] for part in parameters["parts"]):
+        return None
+    deep = {name: max(_heights(inlet).min() - _heights(given).max(), 0.0) for name, given in outlets.items()}
+    name = min(deep, key=deep.__getitem__)
+    speed = float(np.linalg.norm(inlet["velocity_m_per_s"]))  # a wall may turn all of it downwards
+    least = (np.sqrt(speed**2 + 2.0 * GRAVITY * deep[name]) - speed) / GRAVITY
+    if start_up_blocks(parameters) * parameters["sampling"]["block_s"] >= least:
+        return None
+    return "start_up.most_s", (
+        f"at least {math.ceil(MILLISECONDS * least) / MILLISECONDS:g} s, which a free fall from the inlet to"
+        f" outlets.{name} takes: wear would be counted before anything could leave"
+    )
 
 
 def _heights(given: Mapping[str, Any]) -> np.ndarray:
@@ -294,6 +314,7 @@ ROOM_CHECKS: tuple[Check, ...] = (
     rectangles_look_somewhere,
     particles_fit_outlets,
     outlets_are_reached,
+    starts_up_till_it_leaves,
     outlets_apart,
     inlet_before_outlets,
     filling_before_outlets,

@@ -1,8 +1,13 @@
 """Tables of a calibration against its boxes and ranges: what would be found out after hours, or never, is refused."""
 
-import pytest
+import math
+import re
 
-from bulkwear.workflows.cases.calibration import case, checks
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from bulkwear.workflows.cases.calibration import boxes, case, checks
 from bulkwear.workflows.config.design import ConfigError
 from bulkwear.workflows.engine.project import Project
 from tests.support.calibration_study import ROLLING, SLIDING, study
@@ -10,6 +15,8 @@ from tests.support.calibration_study import ROLLING, SLIDING, study
 OWN = {"measured": "ore_tests.csv"}
 HEAD = "response,value,deviation\n"
 SHEAR = "shear_angle_deg,36,0.4\n"
+PLACES = 20_001  # along a box, over which its profile is summed
+SUMMED = 1e-3  # relative, of such a sum, and of the four digits in which a limit is named
 WALL = "wall_material.contact.sliding_friction"
 
 
@@ -76,6 +83,57 @@ def test_a_discharge_is_no_longer_than_what_is_simulated(show):
     with pytest.raises(ConfigError, match=words):
         study(fidelity="standard", calibration=OWN)
     assert study(fidelity="standard", calibration=OWN, rest={"longest_s": 25.1}).runs
+
+
+def heap_height_mm(test, stays_deg, heap_deg):
+    """How high a heap of what flows through a slot lies at the slot's edges, by sums over the box's length."""
+    box, opening = test["box"], boxes.opening_length(test)
+    away = np.abs(np.linspace(-0.5, 0.5, PLACES) * box["length_m"])
+    stays = np.clip(math.tan(math.radians(stays_deg)) * (away - opening / 2.0), 0.0, box["fill_height_m"])
+    flows, slope = np.mean(box["fill_height_m"] - stays), math.tan(math.radians(heap_deg))
+    peak = brentq(lambda top: np.mean(np.clip(top - slope * away, 0.0, None)) - flows, 0.0, 9.0)
+    return 1e3 * (peak - slope * opening / 2.0)
+
+
+@pytest.mark.parametrize(
+    ("rows", "stays_deg", "heap_deg", "words"),
+    [
+        (
+            "draw_down_shear_angle_deg,36,2\nrepose_angle_deg,33,3\n",
+            38.0,
+            30.0,
+            "the heap, as steep as the measured repose_angle_deg, of",
+        ),
+        ("repose_angle_deg,41,1\n", 45.0, 40.0, "the heap, as steep as the measured repose_angle_deg, of"),
+        ("discharge_time_s,5.4,0.1\n", 45.0, 0.0, "in a lower box what flows out dams the slot"),
+    ],
+)
+def test_the_lower_box_holds_the_heap_that_was_measured(show, rows, stays_deg, heap_deg, words):
+    """A heap that grows up to the slot ends the flow: then no slope is the measured one. What is named is enough."""
+    show("ore_tests.csv", f"{HEAD}{SHEAR}{rows}")
+    changes = {"fidelity": "standard", "calibration": OWN}
+    test = boxes.test_of(study(**changes).runs[0].parameters, boxes.DRAW_DOWN, {}, 0)
+    expected = heap_height_mm(test, stays_deg, heap_deg)
+    told = rf"draw_down\.lower_height_mm is 60.*allowed is at least .*{words}"
+    with pytest.raises(ConfigError, match=told) as refused:
+        study(**changes, draw_down={"lower_height_mm": 60})
+    least = float(re.search(r"at least ([\d.]+)", str(refused.value))[1])
+    assert least == pytest.approx(expected, rel=SUMMED)
+    assert study(**changes, draw_down={"lower_height_mm": least}).runs
+    with pytest.raises(ConfigError, match=words):
+        study(**changes, draw_down={"lower_height_mm": 0.999 * least})
+
+
+def test_a_low_filling_makes_a_heap_that_reaches_no_wall(show):
+    """Of the same slopes, in a box that is long for it."""
+    show("ore_tests.csv", f"{HEAD}{SHEAR}repose_angle_deg,33,3\n")
+    changes = {"fidelity": "standard", "calibration": OWN}
+    low = {"fill_height_mm": 120, "fill_mass_kg_per_m": 84.3}
+    test = boxes.test_of(study(**changes, draw_down=low).runs[0].parameters, boxes.DRAW_DOWN, {}, 0)
+    with pytest.raises(ConfigError, match=r"draw_down\.lower_height_mm is 60") as refused:
+        study(**changes, draw_down={**low, "lower_height_mm": 60})
+    least = float(re.search(r"at least ([\d.]+)", str(refused.value))[1])
+    assert least == pytest.approx(heap_height_mm(test, 45.0, 30.0), rel=SUMMED)
 
 
 def test_a_range_of_wall_friction_reaches_its_angle(show):

@@ -252,6 +252,7 @@ RING = {"shape": "ring"}
         # ten steps of 3.45e-5 s for a particle of 8.48 mm at 148 mm
         ("sliding.angular_speed_deg_per_s", 9600, 9400, {"sliding": {"revolution_deg": 150}}),
         ("sliding.angular_speed_deg_per_s", 406, 405, {"tester": RING}),  # 7.07 rad/s: gravity at 196 mm
+        ("wear.patch_radius_mm", 15.1, 15, {"sample": {"width_mm": 40, "length_mm": 30}}),  # half of the shorter side
         ("sliding.steady_revolutions", 1.46, 1.47, {}),  # the last one, and a quarter of 56 degrees in ones of 30
         ("sliding.steady_revolutions", 3.99, 4, {"tester": RING}),
     ],

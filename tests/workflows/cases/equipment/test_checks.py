@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.postproc.wear.laws import LAWS, Parameter
 from bulkwear.workflows.cases.equipment.checks import (
     EQUIPMENT_CHECKS,
@@ -430,6 +431,11 @@ EFFORT = [
         "sampling.patch_mm is 44",
         "at least 45 mm, parts.plate.edge_mm",
     ),
+    (
+        {"wear": {"patch": "radius", "patch_radius_mm": 30.1}},
+        "wear.patch_radius_mm is 30.1",
+        "at most 30 mm, half of sampling.patch_mm: a wider patch spreads the wear of each contact over several",
+    ),
     ({"sampling": {"fewest_blocks": 4}}, "sampling.fewest_blocks is 4", "at most 3, sampling.most_blocks"),
     ({"sampling": {"block_s": 0.001}}, "sampling.block_s is 0.001", "s, 10 contacts of the largest particles"),
     ({"sampling": {"block_s": 1000}}, "sampling.block_s is 1000", "s in up to 8 blocks: it takes"),
@@ -552,6 +558,8 @@ def test_a_drawing_that_is_not_there_is_named_with_its_part(tmp_path):
         STILL,
         {**STILL, "outlets": {"side": {"centre_mm": [400, 0, 345], "normal": [1, 0, 0], "size_mm": [900, 800]}}},
         {"sampling": {"pictures_per_block": 7}},
+        {"wear": {"patch": "radius", "patch_radius_mm": 30}},
+        {"wear": {"patch_radius_mm": 100}},  # which counts for nothing: the patch is the simulated one
         *(
             {"outlets": {"other": {**SETTINGS["outlets"]["below"], "centre_mm": centre}}}
             for centre in ([0, 0, -347], [900, 0, -345], [900, 0, 180])
@@ -617,6 +625,28 @@ def test_a_contact_lasts_as_long_as_hertz_says(tmp_path):
     mass = 2500 * 4 / 3 * math.pi * radius**3 / 2
     modulus = 2 * 4e6 * 1.24 / (1 - 0.24**2) / 2
     assert contact_time(run) == pytest.approx(2.87 * (mass**2 / (radius / 2 * modulus**2 * 1.0)) ** 0.2)
+
+
+def test_start_up_lasts_as_long_as_a_fall_to_an_outlet(tmp_path):
+    """By Galileo from 160 mm to -345 mm, and to the higher one of two outlets; two blocks are always part of it.
+
+    Not where a part moves, which may throw material down, nor in a machine that is filled before.
+    """
+    fall_s = (math.sqrt(1.0 + 2.0 * GRAVITY * 0.505) - 1.0) / GRAVITY
+    short = {"start_up": {"most_s": 0.5 * fall_s}, "sampling": {"block_s": 0.3 * fall_s}}
+    for number, outlets in enumerate(({}, {"far": {**SETTINGS["outlets"]["below"], "centre_mm": [0, 0, -900]}})):
+        words = message_of(tmp_path / f"{number}", **STILL, **short, outlets=outlets)
+        assert f"start_up.most_s is {0.5 * fall_s:.10g} for row A, allowed is at least " in words
+        assert " s, which a free fall from the inlet to outlets.below takes: wear would be counted before " in words
+        least = float(words.split("allowed is at least ")[1].split(" ")[0])
+        assert fall_s <= least < fall_s + 1e-3
+    still = {**STILL, "inlet": {"rate_t_per_h": 10}}
+    enough = [{**still, **short, "start_up": {"most_s": least}}, {**still, "start_up": {"most_s": 0.5 * fall_s}}]
+    throws = motion(kind="belt", velocity_m_per_s=[0, 1, 0])["parts"]
+    thrown = {**short, "inlet": still["inlet"], "parts": {"paddle": None, **throws}}
+    for number, changes in enumerate((*enough, thrown, {**still, **short, "filling": FILLING})):
+        with machine_study(tmp_path / f"right_{number}", **changes) as study:
+            assert study.runs
 
 
 def test_limits_of_effort_are_met_where_they_say(tmp_path):

@@ -153,6 +153,16 @@ FAULTS = [
         " finnie, tangential_work: a pin slides, and makes no impacts.",
     ),
     (
+        {"wear": {"patch": "radius", "patch_radius_mm": 2.1}},
+        "command line: wear.patch_radius_mm is 2.1 for row c17-conserving, allowed is at most 2 mm, disc.radius_mm less"
+        " disc.track_radius_mm: a wider patch spreads the wear beyond the disc.",
+    ),
+    (
+        {"disc": {"radius_mm": 21}, "wear": {"patch": "radius", "patch_radius_mm": 1}},
+        "command line: disc.radius_mm is 21 for row c17-conserving, allowed is at least 22.6996 mm, the track and two"
+        " contact radii, and below 44 mm, two tracks.",
+    ),
+    (
         {"wear": {"acceleration": 1e5}},
         "config/designs/pin_on_disc_quick.csv, line 2, row c17-conserving: a wear coefficient, with its acceleration,"
         " of 1.7e-06 1/Pa wears a deeper groove than 36 updates of 20.4 um can take, allowed is at most 1.36962e-07"
@@ -176,7 +186,10 @@ def test_a_pin_that_cannot_run_is_refused_in_one_sentence(overrides, message):
 
 
 def test_what_a_pins_refusal_names_is_enough():
-    """A load under which a pin rests on the disc, which has room for it, and an acceleration that updates take."""
+    """A load under which a pin rests on the disc, which has room for it, a patch that it has room for, and an
+    acceleration that updates take.
+    """
+    assert load_study("pin_on_disc", overrides={"wear": {"patch": "radius", "patch_radius_mm": 2}}).runs
     heavy = {"pin": {"load_n": 394.271}, "disc": {"radius_mm": 26}}
     assert load_study("pin_on_disc", overrides=heavy).runs
     assert load_study("pin_on_disc", overrides={"wear": {"acceleration": 1.36962e-7 / 5.0e-11}}).runs

@@ -44,6 +44,20 @@ def test_clumps_need_a_time_step_of_run_in():
     assert clumps(least).runs[0].parameters["derived"]["run_in_steps"] == 1
 
 
+def test_a_patch_is_no_wider_than_the_sample():
+    """Its radius is half of the shorter side at most; that of a patch of another kind counts for nothing."""
+
+    def patched(radius_mm, patch="radius"):
+        sides = {"width_mm": 40, "length_mm": 30}
+        return tiny_study(sample=sides, wear={"patch": patch, "patch_radius_mm": radius_mm})
+
+    words = r"wear\.patch_radius_mm is 15\.01 for row R9, allowed is at most 15 mm, half of the sample's shorter side: "
+    with pytest.raises(ConfigError, match=words):
+        patched(15.01)
+    assert patched(15).runs
+    assert patched(100, "simulated").runs
+
+
 @pytest.mark.parametrize(
     ("changes", "block", "key", "bound"),
     [
