@@ -2,9 +2,10 @@
 // a wall of one. What each contact can resist stops the turning that it would have after the step, or acts against it in
 // full. It works on the complete torque, of pairs and of walls.
 //
-// A particle's contacts stop its spin together. Each takes a share of its inertia, one over their number, so that none
-// overshoots, in a few sweeps over all of them: a projected gradient descent of the rotational energy after the step,
-// which is never more than without rolling friction. Nothing depends on the order of contacts, or on ranks.
+// A particle's contacts stop its spin together: their torques make the rotational energy after the step least. They are
+// sought from those of the step before, scaled so that they take out energy, by sweeps over all contacts in each of which
+// a contact takes a share of its particles' inertia, one over their number, so that none overshoots: a projected gradient
+// descent. Energy is never more than without rolling friction. Nothing depends on the order of contacts, or on ranks.
 #pragma once
 
 #include <vector>
@@ -27,7 +28,8 @@ class FixTurningFriction : public LAMMPS_NS::Fix {
   void add(int i, int j, const double* normal, double largest);
 
   int setmask() override;
-  void setup_pre_force(int) override { clear(); }
+  void setup_pre_force(int) override;
+  void pre_exchange() override;
   void pre_force(int) override { clear(); }
   void pre_initial_integrate() override { act(); }
   void pre_final_integrate() override { act(); }
@@ -37,7 +39,9 @@ class FixTurningFriction : public LAMMPS_NS::Fix {
  private:
   struct Contact {
     int i, j;
+    int low, high;  // tags of the two particles, of which a wall has none
     double normal[3], largest, torque[3];  // -, N m, N m
+    int next;                              // in the list of the step before: another contact of the same particle
   };
   struct Turning {
     double spin[3], mobility;  // rad/s after the step; rad/s per N m, of one contact's share of the inertia
@@ -45,11 +49,23 @@ class FixTurningFriction : public LAMMPS_NS::Fix {
 
   void clear();
   void act();
+  double largest_squared() const;
   void prepare();
-  void sweep();
+  void remember();
+  void start();
+  double sweep();
+  void spin_up(const std::vector<double>& torques);
+  bool is_here(int particle) const { return particle != WALL && particle < atom->nlocal; }
+  // With a particle of another rank, or the image of one of this: the other side has this contact too.
+  bool is_between(const Contact& contact) const { return contact.j != WALL && !is_here(contact.j); }
+  double share_of(const Contact& contact) const { return is_between(contact) ? 0.5 : 1.0; }  // in a sum over ranks
+  const Contact* before(const Contact& contact) const;
 
-  bool is_due_ = false;  // contacts were evaluated and have not acted
-  std::vector<Contact> contacts_;
+  bool is_due_ = false;     // contacts were evaluated and have not acted
+  bool is_first_ = true;    // of a run: no step before
+  bool have_moved_ = true;  // particles, between ranks, since the step before
+  std::vector<Contact> contacts_, before_;
+  std::vector<int> first_of_;        // by tag of a particle: its first contact in the list of the step before, or none
   std::vector<Turning> turning_;     // of each particle, those of other ranks too
   std::vector<double> contacts_of_;  // of each particle of this rank
 };

@@ -34,6 +34,8 @@ AT_45_DEGREES = {  # torque over mu_r F_n and the radius, and whether that is fu
     "own_spin": (1.0, True),
     "rvd": (1.0, False),
 }
+CHAIN, SLIDING, BELT = 12, 0.9, 2.0  # spheres, - and m/s of the belt below the first
+PRESSED = 5  # times deeper into one another than into the belt
 BLOCK = 3  # -, spheres along each side of a cube
 GRAVITY = 9.81  # m/s2
 ACCELERATION = 0.01  # relative: the lever of the contact is shorter than the radius by half of the overlap
@@ -85,10 +87,14 @@ def placed(centres, radii, spins):
     return "\n".join(lines) + "\n"
 
 
-def simulated(folder, text, ranks=1):
-    """What was dumped: force, torque and spin, (times, n, 3) each, and x (times, n), of a deck that is run."""
+FLOOR = shifted(plate(0.8, 0.8, 2), (-0.4, -0.4, 0.0))
+
+
+def simulated(folder, text, ranks=1, square=FLOOR):
+    """What was dumped: force, torque and spin, (times, n, 3) each, and x (times, n), of a deck that is run; square: its
+    plate.
+    """
     folder.mkdir(exist_ok=True)
-    square = shifted(plate(0.8, 0.8, 2), (-0.4, -0.4, 0.0))
     write_stl(folder / "plate.stl", square.points, square.triangles)
     (folder / DECK).write_text(text)
     run_deck(folder, ranks, executable=LEDGER_EXECUTABLE)
@@ -228,6 +234,47 @@ def test_many_contacts_make_no_energy(model, spin, tmp_path):
     found = simulated(tmp_path, block_deck(model, block_spins(spin)))["spin"]
     energy = (found**2).sum(axis=(1, 2))
     assert (np.diff(energy) <= GROWTH * energy[0]).all() and energy[-1] < energy[0]
+
+
+def chain_deck(model, ranks, steps):
+    """Spheres in a row along y that are held where they are; a belt below the first turns it about x, a wall ends the row.
+
+    Belt and spheres slide on one another, spheres do not; only wall and spheres resist turning, each contact more than
+    the belt's friction turns.
+    """
+    radius, deep = RADII[0], PRESSED * OVERLAP
+    y = 0.1 + (2.0 * radius - deep) * np.arange(CHAIN)
+    centres = np.column_stack([np.zeros(CHAIN), y, np.full(CHAIN, radius - OVERLAP)])
+    head = HEAD.format(model=model, step=LONG, friction=0.0, ranks=ranks)
+    for name, of_spheres, of_belt in (("Friction", 0.0, SLIDING), ("RollingFriction", COEFFICIENT, 0.0)):
+        start = head.index(f"coefficient{name} peratomtypepair")
+        line = head[start : head.index("\n", start)]
+        head = head.replace(line, f"coefficient{name} peratomtypepair 2 {of_spheres} {of_belt} {of_belt} 0.0")
+    wall = WALL.format(model=model)
+    return (
+        head
+        + placed(centres, np.full(CHAIN, radius), np.zeros((CHAIN, 3)))
+        + f"fix belt all mesh/surface/stress file plate.stl type 2 surface_vel 0.0 {BELT} 0.0\n"
+        + f"{wall}mesh n_meshes 1 meshes belt\n"
+        + f"{wall.replace('fix wall', 'fix end')}primitive type 1 yplane {y[-1] + radius - deep}\n"
+        + "fix motion all nve/sphere\nfix hold all setforce 0.0 0.0 0.0\n"
+        + f"{DUMP.format(every=steps)}run {steps}\n"
+    )
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_chain_hands_a_torque_on_under_rvd(ranks, tmp_path):
+    """A belt that slips turns the first of spheres in a row, which spins without rolling friction. With it each hands the
+    torque on, with the other sign, until the wall holds the last, and all stand.
+    """
+    side = 2.0 * RADII[0]
+    square = shifted(plate(side, side, 1), (-0.5 * side, 0.1 - 0.5 * side, 0.0))
+    held, free = (
+        simulated(tmp_path / model, chain_deck(model, ranks, 4000), ranks, square)["spin"][-1]
+        for model in ("rvd", "off")
+    )
+    np.testing.assert_allclose(held, 0.0, atol=STOPPED)
+    assert abs(free[0, 0]) > 1.0
 
 
 @pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
