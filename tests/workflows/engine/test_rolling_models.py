@@ -237,10 +237,9 @@ def test_many_contacts_make_no_energy(model, spin, tmp_path):
 
 
 def chain_deck(model, ranks, steps):
-    """Spheres in a row along y that are held where they are; a belt below the first turns it about x, a wall ends the row.
+    """Spheres in a row along y that are held where they are; a belt below the first turns it about x, a wall ends them.
 
-    Belt and spheres slide on one another, spheres do not; only wall and spheres resist turning, each contact more than
-    the belt's friction turns.
+    Belt and spheres rub, spheres do not; only wall and spheres resist turning, each contact more than the belt turns.
     """
     radius, deep = RADII[0], PRESSED * OVERLAP
     y = 0.1 + (2.0 * radius - deep) * np.arange(CHAIN)
@@ -264,8 +263,8 @@ def chain_deck(model, ranks, steps):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_chain_hands_a_torque_on_under_rvd(ranks, tmp_path):
-    """A belt that slips turns the first of spheres in a row, which spins without rolling friction. With it each hands the
-    torque on, with the other sign, until the wall holds the last, and all stand.
+    """A belt that slips turns the first of spheres in a row, which spins without rolling friction. With it each hands
+    the torque on, with the other sign, until the wall holds the last, and all stand.
     """
     side = 2.0 * RADII[0]
     square = shifted(plate(side, side, 1), (-0.5 * side, 0.1 - 0.5 * side, 0.0))
