@@ -20,6 +20,7 @@ from tests.support.shapes import plate, shifted
 pytestmark = pytest.mark.solver
 
 RADII, DENSITY, COEFFICIENT, OVERLAP = (0.005, 0.008), 2500.0, 0.3, 1e-4  # m, kg/m3, -, m
+MOMENT_OF_INERTIA = 0.4 * 4.0 / 3.0 * np.pi * RADII[0] ** 5 * DENSITY  # kg m2, of the smaller spheres
 PAIRS, APART = 20, 0.05  # -, m
 SHORT, LONG = 1e-10, 5e-6  # s: within one short step nothing moves; a long one stops spins within hundreds
 TORQUE = 1e-5  # relative: the solver's normal at a wall is not quite of length 1
@@ -34,9 +35,12 @@ AT_45_DEGREES = {  # torque over mu_r F_n and the radius, and whether that is fu
     "own_spin": (1.0, True),
     "rvd": (1.0, False),
 }
+MIXED, MIXED_STEPS = 1.0, 4  # rad/s in a block, so that within so many steps some contacts stop turning and others not
+SWEPT = 0.01  # relative: sweeps end where torques change by 0.001; seen 0.006
 CHAIN, SLIDING, BELT = 12, 0.9, 2.0  # spheres, - and m/s of the belt below the first
 PRESSED = 5  # times deeper into one another than into the belt
-BLOCK = 3  # -, spheres along each side of a cube
+BLOCK, MOST_CONTACTS = 3, 6  # -, spheres along each side of a cube, and contacts of the one in the middle
+MANY_SWEEPS = 20_000  # until nothing changes
 GRAVITY = 9.81  # m/s2
 ACCELERATION = 0.01  # relative: the lever of the contact is shorter than the radius by half of the overlap
 RESTARTED = 1e-9  # relative: rounding, which rolling does not amplify
@@ -234,6 +238,68 @@ def test_many_contacts_make_no_energy(model, spin, tmp_path):
     found = simulated(tmp_path, block_deck(model, block_spins(spin)))["spin"]
     energy = (found**2).sum(axis=(1, 2))
     assert (np.diff(energy) <= GROWTH * energy[0]).all() and energy[-1] < energy[0]
+
+
+def block_contacts():
+    """Contacts of the spheres of `block_deck`: (first, second, axis of the normal), and largest torques (m,) N m.
+
+    second: BLOCK cubed for the floor
+    """
+    cells = np.stack(np.meshgrid(*[np.arange(BLOCK)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    number = {tuple(cell): index for index, cell in enumerate(cells)}
+    steps = np.eye(3, dtype=int)
+    pairs = [
+        (number[tuple(cell)], number[tuple(cell + step)], axis)
+        for cell in cells
+        for axis, step in enumerate(steps)
+        if tuple(cell + step) in number
+    ]
+    floor = [(number[tuple(cell)], len(cells), 2) for cell in cells if cell[2] == 0]
+    modulus = 4.0 / 3.0 * 0.5 * 1e7 / (1.0 - 0.3**2)
+    radii = np.repeat([0.5 * RADII[0], RADII[0]], [len(pairs), len(floor)])
+    return np.array([*pairs, *floor]), COEFFICIENT * modulus * np.sqrt(radii) * OVERLAP**1.5 * radii
+
+
+def least_energy(spins, step):
+    """Spins (27, 3) after a step in which dry friction on all contacts of the block took out the most energy it can.
+
+    They are checked: each contact has stopped, or its torque is the largest and against its turning. spins: before
+    """
+    (first, second, axis), largest = block_contacts()[0].T, block_contacts()[1]
+    per_torque = step / MOMENT_OF_INERTIA
+    tangential_parts = 1.0 - np.eye(3)[axis]
+    torques = np.zeros((len(first), 3))
+
+    def after():
+        sums = np.zeros((BLOCK**3 + 1, 3))
+        np.add.at(sums, first, torques)
+        np.add.at(sums, second, torques)
+        sums[-1] = 0.0
+        return np.vstack([spins, np.zeros(3)]) + per_torque * sums
+
+    for _ in range(MANY_SWEEPS):
+        found = after()
+        turning = (found[first] + found[second]) * tangential_parts
+        wanted = torques - turning / (2.0 * MOST_CONTACTS * per_torque)
+        size = np.linalg.norm(wanted, axis=1)
+        torques = wanted * np.minimum(1.0, largest / np.maximum(size, 1e-300))[:, None]
+    found = after()
+    turning = (found[first] + found[second]) * tangential_parts
+    slips = np.linalg.norm(turning, axis=1) > 1e-9 * np.abs(spins).max()
+    against = -largest[slips, None] * unit(turning[slips])
+    np.testing.assert_allclose(torques[slips], against, atol=1e-6 * largest.max())
+    assert slips.any() and not slips.all()
+    return found[:-1]
+
+
+def test_rvd_takes_out_the_most_energy(tmp_path):
+    """What all contacts of a block do in a step is the one thing that makes the rotational energy after it least."""
+    found = simulated(tmp_path, block_deck("rvd", block_spins(MIXED), steps=MIXED_STEPS))
+    per_torque = LONG / MOMENT_OF_INERTIA
+    for torque, spin in zip(found["torque"][1:], found["spin"][1:], strict=True):
+        before = spin - 0.5 * per_torque * torque  # torques are those of the middle of a step
+        meant = (least_energy(before, LONG) - before) / per_torque
+        assert np.linalg.norm(torque - meant) < SWEPT * np.linalg.norm(meant)
 
 
 def chain_deck(model, ranks, steps):
