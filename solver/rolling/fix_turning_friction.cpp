@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "comm.h"
 #include "fix_spin_friction.h"
@@ -14,13 +15,19 @@ namespace {
 char ID[] = "turning_friction", GROUP[] = "all", STYLE_NAME[] = "rolling/rvd";
 constexpr int SENT = 4;  // numbers of a Turning
 // Sweeps end when torques change by less than this share of the largest ones, both in the mean square, or at a number of
-// sweeps. A bed at rest needs one or two, one that flows about ten. The first step of a run has none before it.
+// sweeps. A bed at rest needs one, one that flows about a dozen. The first step of a run has none before it.
 constexpr double CHANGE = 1e-3, FIRST_CHANGE = 1e-6;
 constexpr int SWEEPS = 100, FIRST_SWEEPS = 1000;
 constexpr int NONE = -1;
 constexpr int NO_TAG = 0;  // of a wall; particles count from 1
 
 double squared(double number) { return number * number; }
+
+// Returns the share of a torque that a contact resists.
+double resisted_share(const double* torque, double largest) {
+  const double size = std::sqrt(squared(torque[0]) + squared(torque[1]) + squared(torque[2]));
+  return size > largest ? largest / size : 1.0;
+}
 }  // namespace
 
 FixTurningFriction::FixTurningFriction(LAMMPS_NS::LAMMPS* lmp, int narg, char** arg) : Fix(lmp, narg, arg) {
@@ -57,7 +64,7 @@ void FixTurningFriction::add(int i, int j, const double* normal, double largest)
   if (!is_due_ || largest <= 0.0) return;
   const double length = std::hypot(normal[0], normal[1], normal[2]);  // at walls not quite 1
   const int one = atom->tag[i], other = j == WALL ? NO_TAG : atom->tag[j];
-  Contact contact{i, j, one, other, {}, largest, {0.0, 0.0, 0.0}, NONE};
+  Contact contact{i, j, one, other, {}, largest, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, NONE};
   if (j != WALL && other < one) std::swap(contact.low, contact.high);
   for (int k = 0; k < 3; ++k) contact.normal[k] = normal[k] / length;
   contacts_.push_back(contact);
@@ -67,14 +74,22 @@ void FixTurningFriction::act() {
   if (!is_due_) return;
   is_due_ = false;
   prepare();
-  const std::vector<Turning> free(turning_.begin(), turning_.begin() + atom->nlocal);
+  const std::vector<double> free = spins_;
   start();
   const double enough = squared(is_first_ ? FIRST_CHANGE : CHANGE) * largest_squared();
-  for (int number = is_first_ ? FIRST_SWEEPS : SWEEPS; number > 0 && sweep() > enough; --number) {}
+  double lead = 0.0, pace = 1.0;
+  for (int number = is_first_ ? FIRST_SWEEPS : SWEEPS; number > 0; --number) {
+    const Swept swept = sweep(lead);
+    if (swept.changes <= enough) break;
+    const double next = 0.5 + std::sqrt(0.25 + pace * pace);
+    lead = swept.overshoots ? 0.0 : (pace - 1.0) / next;
+    pace = swept.overshoots ? 1.0 : next;
+  }
+  const double share = least_energy_share(free);
   for (int particle = 0; particle < atom->nlocal; ++particle) {
     const double inertia_over_step = moment_of_inertia(atom, particle) / update->dt;
     for (int k = 0; k < 3; ++k)
-      atom->torque[particle][k] += inertia_over_step * (turning_[particle].spin[k] - free[particle].spin[k]);
+      atom->torque[particle][k] += inertia_over_step * share * (spins_[3 * particle + k] - free[3 * particle + k]);
   }
   remember();
 }
@@ -95,12 +110,12 @@ void FixTurningFriction::prepare() {
     if (is_here(contact.j)) contacts_of_[contact.j] += 1.0;
   }
   turning_.resize(atom->nlocal + atom->nghost);
+  spins_.resize(3 * atom->nlocal);
   for (int particle = 0; particle < atom->nlocal; ++particle) {
     const double step_over_inertia = update->dt / moment_of_inertia(atom, particle);
-    Turning& turning = turning_[particle];
     for (int k = 0; k < 3; ++k)
-      turning.spin[k] = atom->omega[particle][k] + step_over_inertia * atom->torque[particle][k];
-    turning.mobility = step_over_inertia * contacts_of_[particle];
+      spins_[3 * particle + k] = atom->omega[particle][k] + step_over_inertia * atom->torque[particle][k];
+    turning_[particle].mobility = step_over_inertia * contacts_of_[particle];
   }
 }
 
@@ -135,81 +150,92 @@ const FixTurningFriction::Contact* FixTurningFriction::before(const Contact& con
   return found;
 }
 
-// Starts from the torques of the step before, within what contacts resist now, scaled for the least energy. Where
-// particles may have changed their rank, contacts between ranks start from none, on both.
+// Starts from the torques of the step before, within what contacts resist now. Where particles may have changed their
+// rank, contacts between ranks start from none, on both.
 void FixTurningFriction::start() {
   std::vector<double> torques(3 * atom->nlocal, 0.0);
   for (Contact& contact : contacts_) {
     const Contact* earlier = have_moved_ && is_between(contact) ? nullptr : before(contact);
     if (!earlier) continue;
-    double along = 0.0, square = 0.0;
+    double along = 0.0, wanted[3];
     for (int k = 0; k < 3; ++k) along += earlier->torque[k] * contact.normal[k];
-    for (int k = 0; k < 3; ++k) {
-      contact.torque[k] = earlier->torque[k] - along * contact.normal[k];
-      square += squared(contact.torque[k]);
-    }
-    const double size = std::sqrt(square), share = size > contact.largest ? contact.largest / size : 1.0;
-    for (int k = 0; k < 3; ++k) {
-      contact.torque[k] *= share;
-      torques[3 * contact.i + k] += contact.torque[k];
-      if (is_here(contact.j)) torques[3 * contact.j + k] += contact.torque[k];
-    }
+    for (int k = 0; k < 3; ++k) wanted[k] = earlier->torque[k] - along * contact.normal[k];
+    const double share = resisted_share(wanted, contact.largest);
+    for (int k = 0; k < 3; ++k) contact.torque[k] = share * wanted[k];
+    add_to(torques, contact, contact.torque);
   }
-  // energy along the scale: its slope at none, and twice its curvature
-  double here[2] = {0.0, 0.0}, all[2];
-  for (int particle = 0; particle < atom->nlocal; ++particle) {
-    const double step_over_inertia = update->dt / moment_of_inertia(atom, particle);
-    for (int k = 0; k < 3; ++k) {
-      const double torque = torques[3 * particle + k];
-      here[0] += turning_[particle].spin[k] * torque;
-      here[1] += step_over_inertia * squared(torque);
-    }
-  }
-  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
-  const double scale = all[0] < 0.0 ? std::min(1.0, -all[0] / all[1]) : 0.0;
-  for (Contact& contact : contacts_)
-    for (int k = 0; k < 3; ++k) contact.torque[k] *= scale;
-  for (double& torque : torques) torque *= scale;
   spin_up(torques);
+}
+
+// Adds a contact's torque to those of its particles on this rank.
+void FixTurningFriction::add_to(std::vector<double>& torques, const Contact& contact, const double* torque) const {
+  for (int k = 0; k < 3; ++k) {
+    torques[3 * contact.i + k] += torque[k];
+    if (is_here(contact.j)) torques[3 * contact.j + k] += torque[k];
+  }
 }
 
 // Changes the spins of this rank's particles by torques (N m, three each).
 void FixTurningFriction::spin_up(const std::vector<double>& torques) {
+  changes_.resize(torques.size());
   for (int particle = 0; particle < atom->nlocal; ++particle) {
     const double step_over_inertia = update->dt / moment_of_inertia(atom, particle);
-    for (int k = 0; k < 3; ++k) turning_[particle].spin[k] += step_over_inertia * torques[3 * particle + k];
+    for (int k = 3 * particle; k < 3 * particle + 3; ++k) {
+      changes_[k] = step_over_inertia * torques[k];
+      spins_[k] += changes_[k];
+    }
   }
 }
 
-// All contacts see the same spins, then these change. Returns the sum of squares of the changes of torque, N2 m2.
-double FixTurningFriction::sweep() {
+// All contacts see the same spins, then these change. lead: how far torques and spins first go on, of their last change.
+FixTurningFriction::Swept FixTurningFriction::sweep(double lead) {
+  for (int particle = 0; particle < atom->nlocal; ++particle)
+    for (int k = 0; k < 3; ++k)
+      turning_[particle].spin[k] = spins_[3 * particle + k] + lead * changes_[3 * particle + k];
   comm->forward_comm_fix(this);
   std::vector<double> torques(3 * atom->nlocal, 0.0);
-  double changes = 0.0, all;
+  double here[2] = {0.0, 0.0}, all[2];  // squares of changes, and what they do against the step since the last torques
   for (Contact& contact : contacts_) {
     const Turning& one = turning_[contact.i];
     const Turning other = contact.j == WALL ? Turning{{0.0, 0.0, 0.0}, 0.0} : turning_[contact.j];
-    double sum[3], along = 0.0, wanted[3], square = 0.0;
+    const double mobility = one.mobility + other.mobility;
+    double sum[3], along = 0.0, from[3], wanted[3];
     for (int k = 0; k < 3; ++k) {
       sum[k] = one.spin[k] + other.spin[k];
       along += sum[k] * contact.normal[k];
     }
     for (int k = 0; k < 3; ++k) {
-      wanted[k] = contact.torque[k] - (sum[k] - along * contact.normal[k]) / (one.mobility + other.mobility);
-      square += squared(wanted[k]);
+      from[k] = contact.torque[k] + lead * contact.change[k];
+      wanted[k] = from[k] - (sum[k] - along * contact.normal[k]) / mobility;
     }
-    const double size = std::sqrt(square), share = size > contact.largest ? contact.largest / size : 1.0;
+    const double share = resisted_share(wanted, contact.largest), counts = share_of(contact);
     for (int k = 0; k < 3; ++k) {
-      const double change = share * wanted[k] - contact.torque[k];
-      contact.torque[k] += change;
-      torques[3 * contact.i + k] += change;
-      if (is_here(contact.j)) torques[3 * contact.j + k] += change;
-      changes += share_of(contact) * squared(change);
+      const double found = share * wanted[k];
+      contact.change[k] = found - contact.torque[k];
+      contact.torque[k] = found;
+      here[0] += counts * squared(found - from[k]);
+      here[1] += counts * mobility * (from[k] - found) * contact.change[k];
     }
+    add_to(torques, contact, contact.change);
   }
   spin_up(torques);
-  MPI_Allreduce(&changes, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  return {all[0], all[1] > 0.0};
+}
+
+// Returns the share of the friction found with which the rotational energy after the step is least: 1 where it is, less
+// where sweeps ended early, so that it is never more than without friction. free: spins without it.
+double FixTurningFriction::least_energy_share(const std::vector<double>& free) const {
+  double here[2] = {0.0, 0.0}, all[2];  // slope of the energy along the share, and its curvature
+  for (int particle = 0; particle < atom->nlocal; ++particle) {
+    const double inertia = moment_of_inertia(atom, particle);
+    for (int k = 3 * particle; k < 3 * particle + 3; ++k) {
+      here[0] += inertia * free[k] * (spins_[k] - free[k]);
+      here[1] += inertia * squared(spins_[k] - free[k]);
+    }
+  }
+  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  return all[0] < 0.0 ? std::min(1.0, -all[0] / all[1]) : 0.0;
 }
 
 int FixTurningFriction::pack_comm(int count, int* particles, double* buffer, int, int*) {
