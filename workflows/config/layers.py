@@ -12,7 +12,7 @@ import io
 import math
 import re
 from collections.abc import Callable, Hashable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -45,20 +45,22 @@ class ConfigError(ValueError):
 class Layer:
     """One source of settings: a file, a block of a file, or the command line.
 
-    `lines` maps the path of each key, relative to this layer, to its line in the file (from 1).
+    `lines` maps the path of each key, relative to this layer, to its line in the file (from 1), `files` that of each
+    key of another file, which this one extends, to that file.
     """
 
     source: str
     values: dict[str, Any]
     lines: dict[KeyPath, int] = field(default_factory=dict)
     block: str = ""
+    files: dict[KeyPath, str] = field(default_factory=dict)
 
     def where(self, path: KeyPath = ()) -> str:
         """Return file, line and block of a key (of its nearest parent whose line is known)."""
         while path and path not in self.lines:
             path = path[:-1]
         line = f", line {self.lines[path]}" if path in self.lines else ""
-        return f"{self.source}{line}{', ' + self.block if self.block else ''}"
+        return f"{self.files.get(path, self.source)}{line}{', ' + self.block if self.block else ''}"
 
     def line(self, path: KeyPath) -> float:
         """Return the line of a key, infinity where it is not known."""
@@ -75,15 +77,18 @@ class Layer:
 
     def part(self, keys: set[str]) -> Layer:
         """Return the layer with these top-level keys only; lines are kept."""
-        return Layer(self.source, {k: v for k, v in self.values.items() if k in keys}, self.lines, self.block)
+        return replace(self, values={k: v for k, v in self.values.items() if k in keys})
 
     def inner(self, path: KeyPath, block: str) -> Layer:
         """Return the mapping at `path` as a layer of its own (empty where it is missing or null)."""
         values: Any = self.values
         for key in path:
             values = (values or {}).get(key)
-        lines = {p[len(path) :]: n for p, n in self.lines.items() if p[: len(path)] == path}
-        return Layer(self.source, values or {}, lines, block)
+        lines, files = (
+            {p[len(path) :]: told for p, told in of_paths.items() if p[: len(path)] == path}
+            for of_paths in (self.lines, self.files)
+        )
+        return Layer(self.source, values or {}, lines, block, files)
 
 
 def _number(make: Callable[[str], float]) -> Callable[[yaml.Loader, yaml.ScalarNode], float]:
@@ -273,6 +278,22 @@ def overridden(lower: dict[str, Any], layer: Layer, alternatives: Iterable[Seque
                 inner = inner.get(name, {})
             inner.pop(key, None)
     return merge(kept, layer.values)
+
+
+def extended(lower: Layer, upper: Layer, alternatives: Iterable[Sequence[KeyPath]] = ()) -> Layer:
+    """Return the layer of a file that extends another one, which is read as the lower; as `overridden`."""
+    values = overridden(lower.values, upper, alternatives)
+    lines = {path: line for path, line in lower.lines.items() if path not in upper.lines and _is_in(values, path)}
+    files = {path: lower.files.get(path, lower.source) for path in lines}
+    return Layer(upper.source, values, lines | upper.lines, upper.block, files)
+
+
+def _is_in(values: Any, path: KeyPath) -> bool:
+    for key in path:
+        if not (key in values if isinstance(values, dict) else isinstance(values, list) and key in range(len(values))):
+            return False
+        values = values[key]
+    return True
 
 
 def dotted(path: KeyPath) -> str:

@@ -29,7 +29,8 @@ Generated from the schemas (`workflows/config/schemas`, `workflows/cases/*/*.sch
 
 * `default.yaml`: settings that all cases share.
 * `cases/<case>.yaml`: settings of one case, which stand above those.
-* `studies/<name>.yaml`: one study of a case; it overrides settings, and its `fidelities` blocks override them again.
+* `studies/<name>.yaml`: one study of a case, or what it changes of one that it `extends`; it overrides settings, and
+  its `fidelities` blocks override them again.
 * The command line overrides all of them.
 * `designs/*.csv`: design tables; each row makes a run, or one with each surface (`R9_convex`). Columns are those of the
   case; where they name a setting, the row overrides it.

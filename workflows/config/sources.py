@@ -16,9 +16,11 @@ from bulkwear.workflows.config.law_settings import PARAMETERS, law_settings
 from bulkwear.workflows.config.laws_beside import beside_settings
 from bulkwear.workflows.config.layers import (
     ConfigError,
+    KeyPath,
     Layer,
     command_line_layer,
     display_name,
+    extended,
     merge,
     overridden,
     read_yaml,
@@ -33,6 +35,8 @@ from bulkwear.workflows.engine.worn_pair import BESIDE, COEFFICIENT_ERROR
 DESIGN = "design"  # key of a study, and of its fidelity blocks
 MATERIALS = "materials.yaml"  # in config, where a study names no other
 STUDIES = "config/studies"
+EXTENDS, FIDELITIES = "extends", "fidelities"  # keys of a study
+ITS_OWN = ("title", "question")  # keys that a study which extends another needs
 
 
 def list_studies(project: Project | None = None) -> list[str]:
@@ -79,12 +83,12 @@ class Sources:
         return {**schema, "required": [c for c in schema["properties"] if c in needed or c in schema["required"]]}
 
     def block(self, fidelity: str) -> Layer:
-        return self.study.inner(("fidelities", fidelity), f"fidelity {fidelity}")
+        return _block(self.study, fidelity)
 
     @property
     def partial_layers(self) -> list[Layer]:
         """All layers that override some keys: the study's, those of its fidelities and the command line."""
-        blocks = [self.block(fidelity) for fidelity in self.study.values.get("fidelities", {})]
+        blocks = [self.block(fidelity) for fidelity in self.study.values.get(FIDELITIES, {})]
         return [self.study_settings, *blocks, self.command]
 
     def stack(self, fidelity: str) -> tuple[Layer, ...]:
@@ -115,34 +119,53 @@ class Sources:
 
 def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) -> Sources:
     """Return the sources of a study, each checked by itself so that a fault is reported where it stands."""
-    study = _read_study(name, project)
-    named = study.part({"case"})
+    files = _read_study(name, project)
+    named = reduce(extended, (file.part({"case"}) for file in files))
     check_layer(named, without_required(load_schema("study")))
     case = find_case(named.values.get("case", DEFAULT_CASE))
     shared, own = load_schema("settings"), load_schema(f"cases/{case.name}/settings")
     for stray in set(project.names("config/cases", ".yaml")) - {f"{name}.yaml" for name in case_names()}:
         raise ConfigError(unknown_name(f"config/cases/{stray}", "case", stray.removesuffix(".yaml"), case_names()))
     default = _read_defaults(["config/default.yaml"], project, shared)
-    files = [f"config/cases/{folder.name}.yaml" for folder in reversed(case_folders(case))]
-    of_case = _read_defaults(files, project, joined(without_required(shared), own))
-    sources = Sources(case, default, of_case, study, command_line_layer(overrides))
-    of_study = case_schema(case.name, "study")
+    folders = [f"config/cases/{folder.name}.yaml" for folder in reversed(case_folders(case))]
+    of_case = _read_defaults(folders, project, joined(without_required(shared), own))
     partial = without_required(joined(shared, own))
-    allowed = of_study["properties"] | partial["properties"]
-    if "case" not in named.values:
-        _check_case_meant(sources.study, case.name, allowed)
     columns = own_columns(load_schema(f"cases/{case.name}/design"))
-    check_layer(sources.study, {**of_study, "properties": allowed}, columns)
-    offered = {k: v for k, v in partial["properties"].items() if k != "fidelity"}
-    within_block = {**partial, "properties": offered | {DESIGN: of_study["properties"][DESIGN]}}
-    for fidelity in sources.study.values.get("fidelities", {}):
-        check_layer(sources.block(fidelity), within_block, columns)
+    study = _checked_study(files, case, partial, columns, "case" in named.values)
+    sources = Sources(case, default, of_case, study, command_line_layer(overrides))
     check_layer(sources.command, partial, columns)
     check_alternatives(of_case[0], case.alternatives, required=True)
     for layer in (*sources.defaults, *sources.partial_layers):
         for alternatives in alternatives_of(case, layer.values):
             check_alternatives(layer, alternatives, required=False)
     return sources
+
+
+def _checked_study(
+    files: Sequence[Layer], case: Case, settings: Mapping[str, Any], columns: Sequence[str], is_case_named: bool
+) -> Layer:
+    """Return the layer of a study from its files, each checked before it is joined: the one that extends others last.
+
+    settings: their schema, in which none is required; columns: of the design that stand for no setting
+    """
+    of_study = case_schema(case.name, "study")
+    whole = {**of_study, "properties": of_study["properties"] | settings["properties"]}
+    offered = {k: v for k, v in settings["properties"].items() if k != "fidelity"}
+    within_block = {**settings, "properties": offered | {DESIGN: of_study["properties"][DESIGN]}}
+    study = None
+    for file in files:
+        if not is_case_named:
+            _check_case_meant(file, case.name, whole["properties"])
+        check_layer(file, without_required(whole), columns)
+        for fidelity in file.values.get(FIDELITIES, {}):
+            check_layer(_block(file, fidelity), within_block, columns)
+        study = file if study is None else extended(study, file, _alternatives_of(case, file))
+        check_layer(study, whole, columns)
+    return study
+
+
+def _block(study: Layer, fidelity: str) -> Layer:
+    return study.inner((FIDELITIES, fidelity), f"fidelity {fidelity}")
 
 
 def _check_case_meant(study: Layer, case: str, allowed: Mapping[str, Any]) -> None:
@@ -156,8 +179,40 @@ def _check_case_meant(study: Layer, case: str, allowed: Mapping[str, Any]) -> No
             )
 
 
-def _read_study(name: str, project: Project) -> Layer:
-    """Return the file of a study. Raises ConfigError for a name that project and package both have."""
+def _alternatives_of(case: Case, study: Layer) -> list[tuple[KeyPath, ...]]:
+    """Return the groups of settings of which one stands for all others, of a study's file and of its fidelities."""
+    blocks = {(FIDELITIES, name): block or {} for name, block in study.values.get(FIDELITIES, {}).items()}
+    return [
+        tuple((*block, *path) for path in group)
+        for block, values in {(): study.values, **blocks}.items()
+        for group in alternatives_of(case, values)
+    ]
+
+
+def _read_study(name: str, project: Project) -> list[Layer]:
+    """Return the files of a study, that of one that it extends before its own.
+
+    Raises ConfigError for a name that project and package both have, and for studies that extend one another.
+    """
+    files, names = [_study_file(name, project)], [name]
+    while EXTENDS in files[0].values:
+        check_layer(files[0].part({EXTENDS}), without_required(load_schema("study")))
+        where, named = files[0].where((EXTENDS,)), files[0].values[EXTENDS]
+        if named in names:
+            raise ConfigError(f"{where}: {EXTENDS} is {named}, which leads back to it, allowed is another study.")
+        if named not in list_studies(project):
+            raise ConfigError(unknown_name(where, EXTENDS, named, list_studies(project)))
+        if missing := [key for key in ITS_OWN if key not in files[0].values]:
+            raise ConfigError(
+                f"{files[0].source}: {missing[0]} is missing, allowed is one of its own: not that of {named}, which it"
+                " extends."
+            )
+        files, names = [_study_file(named, project), *files], [named, *names]
+    return files
+
+
+def _study_file(name: str, project: Project) -> Layer:
+    """Return the file of a study alone. Raises ConfigError for a name that project and package both have."""
     files = project.every(f"{STUDIES}/{name}.yaml")
     if not files:
         raise ConfigError(
@@ -192,7 +247,7 @@ def fidelity_of(sources: Sources) -> str:
     layers = (*sources.defaults, sources.study_settings, sources.command)
     source = next(layer for layer in reversed(layers) if "fidelity" in layer.values)
     fidelity = source.values["fidelity"]
-    offered = sources.study.values.get("fidelities")
+    offered = sources.study.values.get(FIDELITIES)
     if offered is not None and fidelity not in offered:
         raise ConfigError(
             f"{source.where(('fidelity',))}: fidelity is '{fidelity}',"

@@ -4,19 +4,19 @@ import yaml
 
 from tests import REPOSITORY
 
-ITS_OWN = {"bed": "material", "solver": "rolling_friction"}  # settings that particle_size does not give
-
 
 def read(name):
     return yaml.safe_load((REPOSITORY / "config" / name).read_text(encoding="utf-8"))
 
 
 def test_it_differs_in_sizes_and_rolling_model_alone():
-    one, usual = (read(f"studies/particle_size{name}.yaml") for name in ("_one_size", ""))
-    told = {section: one[section].pop(key) for section, key in ITS_OWN.items()}
-    assert told == {"bed": "river_gravel_one_size", "solver": "rvd"}
-    assert all(one.pop(key) != usual.pop(key) for key in ("title", "question"))
-    assert one == usual
+    one = read("studies/particle_size_one_size.yaml")
+    assert one.pop("title") and one.pop("question")
+    assert one == {
+        "extends": "particle_size",
+        "bed": {"material": "river_gravel_one_size"},
+        "solver": {"rolling_friction": "rvd"},
+    }
 
 
 def test_its_gravel_is_the_sources_but_for_the_sizes():
