@@ -42,14 +42,12 @@ from bulkwear.workflows.config.run_checks import (
 )
 from bulkwear.workflows.config.schema import case_schema, load_schema
 from bulkwear.workflows.config.sources import (
-    DESIGN,
-    STUDIES,
     Sources,
     fidelity_of,
-    list_studies,
     read_materials,
     read_sources,
 )
+from bulkwear.workflows.config.study_files import DESIGN, STUDIES, list_studies
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.until import GOALS, UNTIL, Until, until_of
 from bulkwear.workflows.config.validation import check_given, locate, read_design, show, unknown_name, with_place

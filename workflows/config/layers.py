@@ -280,9 +280,16 @@ def overridden(lower: dict[str, Any], layer: Layer, alternatives: Iterable[Seque
     return merge(kept, layer.values)
 
 
-def extended(lower: Layer, upper: Layer, alternatives: Iterable[Sequence[KeyPath]] = ()) -> Layer:
-    """Return the layer of a file that extends another one, which is read as the lower; as `overridden`."""
-    values = overridden(lower.values, upper, alternatives)
+def extended(lower: Layer, upper: Layer, replaced: Iterable[KeyPath] = ()) -> Layer:
+    """Return the layer of a file that extends another one, key by key; replaced: paths of the other that fall away."""
+    kept = merge(lower.values, {})
+    for *block, key in replaced:
+        inner: Any = kept
+        for name in block:
+            inner = inner.get(name) if isinstance(inner, dict) else None
+        if isinstance(inner, dict):
+            inner.pop(key, None)
+    values = merge(kept, upper.values)
     lines = {path: line for path, line in lower.lines.items() if path not in upper.lines and _is_in(values, path)}
     files = {path: lower.files.get(path, lower.source) for path in lines}
     return Layer(upper.source, values, lines | upper.lines, upper.block, files)

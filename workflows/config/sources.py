@@ -6,7 +6,7 @@ Each file is checked by itself, so that a fault is reported where it stands.
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
@@ -16,7 +16,6 @@ from bulkwear.workflows.config.law_settings import PARAMETERS, law_settings
 from bulkwear.workflows.config.laws_beside import beside_settings
 from bulkwear.workflows.config.layers import (
     ConfigError,
-    KeyPath,
     Layer,
     command_line_layer,
     display_name,
@@ -26,27 +25,14 @@ from bulkwear.workflows.config.layers import (
     read_yaml,
 )
 from bulkwear.workflows.config.schema import case_schema, coerce_numbers, joined, load_schema, without_required
+from bulkwear.workflows.config.study_files import CASE, DESIGN, FIDELITIES, block_of, joined_study, read_study
 from bulkwear.workflows.config.validation import check_alternatives, check_layer, own_columns, unknown_name
 from bulkwear.workflows.engine.case import DEFAULT_CASE, Case
 from bulkwear.workflows.engine.cases import case_folders, case_names, find_case
-from bulkwear.workflows.engine.project import Project, current_project
+from bulkwear.workflows.engine.project import Project
 from bulkwear.workflows.engine.worn_pair import BESIDE, COEFFICIENT_ERROR
 
-DESIGN = "design"  # key of a study, and of its fidelity blocks
 MATERIALS = "materials.yaml"  # in config, where a study names no other
-STUDIES = "config/studies"
-EXTENDS, FIDELITIES = "extends", "fidelities"  # keys of a study
-ITS_OWN = ("title", "question")  # keys that a study which extends another needs
-
-
-def list_studies(project: Project | None = None) -> list[str]:
-    """Return the names of the studies of a project, by default the current one, and of the package."""
-    return [name.removesuffix(".yaml") for name in (project or current_project()).names(STUDIES, ".yaml")]
-
-
-def own_studies(project: Project) -> list[str]:
-    """Return the names of the studies that are the project's own."""
-    return sorted(path.stem for path in (project.folder / STUDIES).glob("*.yaml"))
 
 
 @dataclass(frozen=True)
@@ -83,7 +69,7 @@ class Sources:
         return {**schema, "required": [c for c in schema["properties"] if c in needed or c in schema["required"]]}
 
     def block(self, fidelity: str) -> Layer:
-        return _block(self.study, fidelity)
+        return block_of(self.study, fidelity)
 
     @property
     def partial_layers(self) -> list[Layer]:
@@ -119,10 +105,10 @@ class Sources:
 
 def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) -> Sources:
     """Return the sources of a study, each checked by itself so that a fault is reported where it stands."""
-    files = _read_study(name, project)
-    named = reduce(extended, (file.part({"case"}) for file in files))
+    files = read_study(name, project)
+    named = reduce(extended, (file.part({CASE}) for file in files))
     check_layer(named, without_required(load_schema("study")))
-    case = find_case(named.values.get("case", DEFAULT_CASE))
+    case = find_case(named.values.get(CASE, DEFAULT_CASE))
     shared, own = load_schema("settings"), load_schema(f"cases/{case.name}/settings")
     for stray in set(project.names("config/cases", ".yaml")) - {f"{name}.yaml" for name in case_names()}:
         raise ConfigError(unknown_name(f"config/cases/{stray}", "case", stray.removesuffix(".yaml"), case_names()))
@@ -131,7 +117,7 @@ def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) 
     of_case = _read_defaults(folders, project, joined(without_required(shared), own))
     partial = without_required(joined(shared, own))
     columns = own_columns(load_schema(f"cases/{case.name}/design"))
-    study = _checked_study(files, case, partial, columns, "case" in named.values)
+    study = joined_study(files, case, partial, columns)
     sources = Sources(case, default, of_case, study, command_line_layer(overrides))
     check_layer(sources.command, partial, columns)
     check_alternatives(of_case[0], case.alternatives, required=True)
@@ -139,91 +125,6 @@ def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) 
         for alternatives in alternatives_of(case, layer.values):
             check_alternatives(layer, alternatives, required=False)
     return sources
-
-
-def _checked_study(
-    files: Sequence[Layer], case: Case, settings: Mapping[str, Any], columns: Sequence[str], is_case_named: bool
-) -> Layer:
-    """Return the layer of a study from its files, each checked before it is joined: the one that extends others last.
-
-    settings: their schema, in which none is required; columns: of the design that stand for no setting
-    """
-    of_study = case_schema(case.name, "study")
-    whole = {**of_study, "properties": of_study["properties"] | settings["properties"]}
-    offered = {k: v for k, v in settings["properties"].items() if k != "fidelity"}
-    within_block = {**settings, "properties": offered | {DESIGN: of_study["properties"][DESIGN]}}
-    study = None
-    for file in files:
-        if not is_case_named:
-            _check_case_meant(file, case.name, whole["properties"])
-        check_layer(file, without_required(whole), columns)
-        for fidelity in file.values.get(FIDELITIES, {}):
-            check_layer(_block(file, fidelity), within_block, columns)
-        study = file if study is None else extended(study, file, _alternatives_of(case, file))
-        check_layer(study, whole, columns)
-    return study
-
-
-def _block(study: Layer, fidelity: str) -> Layer:
-    return study.inner((FIDELITIES, fidelity), f"fidelity {fidelity}")
-
-
-def _check_case_meant(study: Layer, case: str, allowed: Mapping[str, Any]) -> None:
-    """Raise ConfigError for a study without a case, with a key that its case, the default, has not, but others have."""
-    for key in (key for key in study.values if key not in allowed):
-        others = [other for other in case_names() if key in load_schema(f"cases/{other}/settings")["properties"]]
-        if others:
-            raise ConfigError(
-                f"{study.where((key,))}: {key} is a key of {', '.join(others)}, and the study names no case, which is"
-                f" {case} then; allowed is case: {others[0]}, or none of its keys."
-            )
-
-
-def _alternatives_of(case: Case, study: Layer) -> list[tuple[KeyPath, ...]]:
-    """Return the groups of settings of which one stands for all others, of a study's file and of its fidelities."""
-    blocks = {(FIDELITIES, name): block or {} for name, block in study.values.get(FIDELITIES, {}).items()}
-    return [
-        tuple((*block, *path) for path in group)
-        for block, values in {(): study.values, **blocks}.items()
-        for group in alternatives_of(case, values)
-    ]
-
-
-def _read_study(name: str, project: Project) -> list[Layer]:
-    """Return the files of a study, that of one that it extends before its own.
-
-    Raises ConfigError for a name that project and package both have, and for studies that extend one another.
-    """
-    files, names = [_study_file(name, project)], [name]
-    while EXTENDS in files[0].values:
-        check_layer(files[0].part({EXTENDS}), without_required(load_schema("study")))
-        where, named = files[0].where((EXTENDS,)), files[0].values[EXTENDS]
-        if named in names:
-            raise ConfigError(f"{where}: {EXTENDS} is {named}, which leads back to it, allowed is another study.")
-        if named not in list_studies(project):
-            raise ConfigError(unknown_name(where, EXTENDS, named, list_studies(project)))
-        if missing := [key for key in ITS_OWN if key not in files[0].values]:
-            raise ConfigError(
-                f"{files[0].source}: {missing[0]} is missing, allowed is one of its own: not that of {named}, which it"
-                " extends."
-            )
-        files, names = [_study_file(named, project), *files], [named, *names]
-    return files
-
-
-def _study_file(name: str, project: Project) -> Layer:
-    """Return the file of a study alone. Raises ConfigError for a name that project and package both have."""
-    files = project.every(f"{STUDIES}/{name}.yaml")
-    if not files:
-        raise ConfigError(
-            f"{STUDIES}/{name}.yaml: found no such file, a folder perhaps; allowed is the file of a study."
-        )
-    if len(files) > 1:
-        raise ConfigError(
-            f"{STUDIES}/{name}.yaml: a study {name} is in the package too, {files[1]}, allowed is a name of its own: "
-            f"none of {', '.join(path.stem for path in sorted(files[1].parent.glob('*.yaml')))}."
-        )
-    return read_yaml(files[0], project.folder)
 
 
 def _read_defaults(names: list[str], project: Project, schema: dict[str, Any]) -> tuple[Layer, ...]:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from bulkwear.workflows.config.design import CONFIRMATION, RULE_NAMES, TARGETS, ConfigError, list_studies
-from bulkwear.workflows.config.sources import own_studies
+from bulkwear.workflows.config.study_files import own_studies
 from bulkwear.workflows.config.validation import unknown_name
 from bulkwear.workflows.engine.project import Project, current_project
 

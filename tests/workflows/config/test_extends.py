@@ -36,6 +36,18 @@ def test_it_runs_as_the_other_but_for_its_own_keys(config):
     assert load_study("wider", config.project, {"fidelity": "paper"}).settings["particle_scale"] == 1.0
 
 
+def test_what_it_gives_for_all_fidelities_stands_above_those_of_the_other(config):
+    """A key of the file itself, as if it were written in each fidelity; one of its own fidelity stands above both."""
+    more = "particle_scale: 3.0\nbed: {width_mm: 130}\ndesign: other.csv\n"
+    config.write("designs/other.csv", config.path("designs/small.csv").read_text().replace("R5", "R6"))
+    config.edit("studies/small.yaml", "  quick:\n", "  quick:\n    design: small.csv\n")
+    wider = load_study(extending(config, more), config.project)
+    assert (wider.settings["particle_scale"], wider.settings["bed"]["width_mm"]) == (3.0, 130)
+    assert {run.row for run in wider.runs} == {"R9", "R6"}
+    wider = load_study(extending(config, f"{more}fidelities: {{quick: {{particle_scale: 2.5}}}}\n"), config.project)
+    assert (wider.settings["particle_scale"], wider.settings["bed"]["width_mm"]) == (2.5, 130)
+
+
 def test_one_extends_another_that_extends_a_third(config):
     """The nearest file wins, whatever stands between."""
     extending(config, "bed: {behind_mm: 400, ahead_mm: 180}\n")
@@ -45,7 +57,7 @@ def test_one_extends_another_that_extends_a_third(config):
 
 
 def test_an_alternative_stands_for_the_one_below(config):
-    """A wear coefficient per pascal in place of the other's k, in the file and in a fidelity."""
+    """A wear coefficient per pascal in place of the other's k, in the file and in a fidelity of either."""
     given = "wear: {wear_coefficient_k: 1.0e-4}\n"
     config.edit(
         "materials.yaml", "    shear_modulus_pa: 78.0e9\n", "    shear_modulus_pa: 78.0e9\n    hardness_pa: 1.2e9\n"
@@ -55,6 +67,8 @@ def test_an_alternative_stands_for_the_one_below(config):
     assert wear["wear_coefficient_per_pa"] == 2.0e-13
     config.edit("studies/small.yaml", given, "")
     config.edit("studies/small.yaml", "    bed:\n", f"    {given}    bed:\n")
+    wear = load_study("wider", config.project).settings["wear"]
+    assert wear["wear_coefficient_per_pa"] == 2.0e-13
     extending(config, "fidelities: {quick: {wear: {wear_coefficient_per_pa: 3.0e-13}}}\n")
     wear = load_study("wider", config.project).settings["wear"]
     assert wear["wear_coefficient_per_pa"] == 3.0e-13

@@ -17,7 +17,8 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.collision import (
 )
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.schema import SCHEMA_FOLDER, load_schema
-from bulkwear.workflows.config.sources import list_studies, read_sources
+from bulkwear.workflows.config.sources import read_sources
+from bulkwear.workflows.config.study_files import list_studies
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.engine.bulk_tests import time_step

@@ -6,7 +6,8 @@ import pytest
 
 from bulkwear.workflows.cases.sliding_sample.decks import bed_mass, lowered_bed, settled_bed, sliding_sample
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.config.sources import list_studies, read_sources
+from bulkwear.workflows.config.sources import read_sources
+from bulkwear.workflows.config.study_files import list_studies
 from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine.beds import bed_fault, read_measures
 from bulkwear.workflows.engine.cycles import fill_bed
