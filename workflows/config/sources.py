@@ -25,7 +25,15 @@ from bulkwear.workflows.config.layers import (
     read_yaml,
 )
 from bulkwear.workflows.config.schema import case_schema, coerce_numbers, joined, load_schema, without_required
-from bulkwear.workflows.config.study_files import CASE, DESIGN, FIDELITIES, block_of, joined_study, read_study
+from bulkwear.workflows.config.study_files import (
+    CASE,
+    DESIGN,
+    FIDELITIES,
+    block_of,
+    check_case,
+    joined_study,
+    read_study,
+)
 from bulkwear.workflows.config.validation import check_alternatives, check_layer, own_columns, unknown_name
 from bulkwear.workflows.engine.case import DEFAULT_CASE, Case
 from bulkwear.workflows.engine.cases import case_folders, case_names, find_case
@@ -109,6 +117,7 @@ def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) 
     named = reduce(extended, (file.part({CASE}) for file in files))
     check_layer(named, without_required(load_schema("study")))
     case = find_case(named.values.get(CASE, DEFAULT_CASE))
+    check_case(files, case)
     shared, own = load_schema("settings"), load_schema(f"cases/{case.name}/settings")
     for stray in set(project.names("config/cases", ".yaml")) - {f"{name}.yaml" for name in case_names()}:
         raise ConfigError(unknown_name(f"config/cases/{stray}", "case", stray.removesuffix(".yaml"), case_names()))

@@ -9,8 +9,8 @@ from bulkwear.workflows.config.coefficients import alternatives_of
 from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, extended, read_yaml
 from bulkwear.workflows.config.schema import case_schema, load_schema, without_required
 from bulkwear.workflows.config.validation import check_layer, unknown_name
-from bulkwear.workflows.engine.case import Case
-from bulkwear.workflows.engine.cases import case_names
+from bulkwear.workflows.engine.case import DEFAULT_CASE, Case
+from bulkwear.workflows.engine.cases import case_folders, case_names
 from bulkwear.workflows.engine.project import Project, current_project
 
 STUDIES = "config/studies"
@@ -64,6 +64,16 @@ def _study_file(name: str, project: Project) -> Layer:
             f"none of {', '.join(path.stem for path in sorted(files[1].parent.glob('*.yaml')))}."
         )
     return read_yaml(files[0], project.folder)
+
+
+def check_case(files: Sequence[Layer], case: Case) -> None:
+    """Raise ConfigError where a study is of another case than the one that it extends, and not of one made of that."""
+    first = files[0].values.get(CASE, DEFAULT_CASE)
+    if first not in [folder.name for folder in case_folders(case)]:
+        where = next(file.where((CASE,)) for file in reversed(files) if CASE in file.values)
+        raise ConfigError(
+            f"{where}: case is {case.name}, allowed is {first}, that of {files[0].source}, or a case that extends it."
+        )
 
 
 def joined_study(files: Sequence[Layer], case: Case, settings: Mapping[str, Any], columns: Sequence[str]) -> Layer:

@@ -113,3 +113,12 @@ def test_two_that_extend_one_another(config):
     extending(config, text=WIDER.replace("small", "widest"))
     extending(config, name="widest", text=WIDER.replace("small", "wider"))
     assert "extends is wider, which leads back to it" in message(config)
+
+
+def test_a_case_that_the_other_is_not_of(config):
+    """Its keys would be told as unknown in the other's file, where nothing is wrong."""
+    extending(config, "case: pin_on_disc\n")
+    assert message(config) == (
+        "config/studies/wider.yaml, line 4: case is pin_on_disc, allowed is sliding_sample, that of"
+        " config/studies/small.yaml, or a case that extends it."
+    )
