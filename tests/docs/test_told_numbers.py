@@ -242,61 +242,28 @@ def test_what_the_best_pattern_wears():
     assert f"R5 wears {r5} of plain there, and {interval(*long)} on the source's sample" in page
 
 
-def velocity_at_8(study):
-    """What a study found of the bed's relative velocity over the convex sample at scale 8, in words."""
-    found = table(f"published/{study}_results_quick.csv")
-    return found[(found["finding"] == "relative velocity, convex") & found["published"].str.contains("scale 8")][
-        "found"
-    ].iloc[0]
-
-
 def test_why_the_critical_scale_differs():
     """Ratios of convex to plain wear with one size of particles and other rolling models, beside the source's lines."""
     page, key = told("particle_size.md"), ["candidate", "particle scale"]
     found = rows("critical_scale_results.md", "particle scale", "candidate", "kind").set_index(key)
-    one, both, longer = (
-        found.loc[each]
-        for each in ("one size of particles", "one size, rolling as rvd", "one size, rolling as rvd, time step 0.1")
-    )
-    ratio, source = both["wear over plain"].astype(float), [f"{source_ratio(scale):.2f}" for scale in (3, 4, 5)]
-    assert (
-        "wears {:.2f}, {:.2f} and {:.2f} of the plain one at scales 3, 4 and 5".format(*ratio[["3", "4", "5"]]) in page
-    )
-    assert "by the source's lines {}, {} and {}.".format(*source) in page
-    assert f"to {ratio['8']:.2f} at 8, the source's to {source_ratio(8):.2f}" in page
-    critical = rows("critical_scale_results.md", "candidate", "scales", "packings", "critical scale").set_index(
-        "candidate"
-    )
-    at = critical.loc["one size, rolling as rvd"]
-    low, high = at["where"].split(" to ")
-    assert (
-        f"critical scale is {float(at['critical scale']):.1f} ({float(low):.1f} to {float(high):.1f}, by the forms"
-        in page
-    )
+    one, both = (found.loc[each] for each in ("one size of particles", "one size, rolling as rvd"))
+    ratio, alone = (each["wear over plain"].astype(float)[["3", "4", "6", "8"]] for each in (both, one))
+    assert "wears {:.2f} (one packing), {:.2f}, {:.2f} and {:.2f} of the plain".format(*ratio) in page
+    assert "lines {:.2f}, {:.2f}, {:.2f} and {:.2f}.".format(*map(source_ratio, (3, 4, 6, 8))) in page
+    assert "{:.2f} (one packing), {:.2f}, {:.2f} and {:.2f} at 3, 4, 6 and 8".format(*alone) in page
+    critical = rows("critical_scale_results.md", "candidate", "scales", "packings", "critical scale")
+    where = critical.set_index("candidate")["where"]
+    assert where["one size of particles"].startswith("below 4, if anywhere") and alone["3"] > 1.0
+    assert f"is 3 or below ({where['one size, rolling as rvd'].removeprefix('below 3 ')}, by the forms" in page
+    for_study = where["the study with the source's pair"].removesuffix(" to beyond 8")
+    assert f"from {float(for_study):.1f} or beyond to 3 or below" in page
     at_4 = one.loc["4", ["over reference", "over reference low", "over reference high"]].astype(float)
     assert "the ratio {:.1f} times ({:.1f} to {:.1f}) as large at scale 4".format(*at_4) in page
-    alone = one["wear over plain"].astype(float)
-    assert "{:.2f} (one packing), {:.2f}, {:.2f} and {:.2f} at 3, 4, 6 and 8".format(*alone) in page
     off = [
         100.0 * (1.0 - float(found.loc[(f"rolling {how}", "8"), "over reference"]))
         for how in ("as rvd", "on relative spin")
     ]
     assert "takes {:.0f} and {:.0f} % off the ratio at 8".format(*off) in page
-    key = ["setting", "particle scale"]
-    alike = rows("particle_size_one_size_results_quick.md", *key, "layers of particles").set_index("setting")
-    at_4, at_12 = (
-        alike.loc[row, ["wear over plain", "interval low", "interval high"]].astype(float) for row in ("S4", "S12")
-    )
-    assert "{:.2f} ({:.2f} to {:.2f}) at scale 4, ".format(*at_4) in page
-    assert "{:.2f} ({:.2f} to {:.2f}) at 12".format(*at_12) in page
-    velocity, three = (
-        [float(number) for number in re.findall(r"[\d.]+", each.partition(":")[2])]
-        for each in (velocity_at_8("particle_size_one_size"), velocity_at_8("particle_size"))
-    )
-    of_both = "goes at {:.0f} % of its speed at scale 8 ({:.0f} to {:.0f})".format(velocity[0], *velocity[2:4])
-    assert f"{of_both}, where three sizes have {three[0]:.0f}." in page
-    step = longer.loc["6", ["wear over plain", "ratio low", "ratio high"]].astype(float)
-    assert "at scale 6 is {:.2f} ({:.2f} to {:.2f}), where it was {:.2f}".format(*step, ratio["6"]) in page
 
 
 def test_what_decisions_say_of_softness_and_time_steps():
