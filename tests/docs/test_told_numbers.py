@@ -257,6 +257,9 @@ def test_why_the_critical_scale_differs():
     assert f"is 3 or below ({where['one size, rolling as rvd'].removeprefix('below 3 ')}, by the forms" in page
     for_study = where["the study with the source's pair"].removesuffix(" to beyond 8")
     assert f"from {float(for_study):.1f} or beyond to 3 or below" in page
+    alike = rows("particle_size_one_size_results_quick.md", "setting", "particle scale", "layers of particles")
+    of_study = alike.set_index("setting")["wear over plain"].astype(float)
+    assert f"(particle_size_one_size_results_quick.md): {of_study['S4']:.2f} at scale 4, {of_study['S12']:.2f}" in page
     at_4 = one.loc["4", ["over reference", "over reference low", "over reference high"]].astype(float)
     assert "the ratio {:.1f} times ({:.1f} to {:.1f}) as large at scale 4".format(*at_4) in page
     off = [
