@@ -6,7 +6,7 @@
 // sought from those of the step before, by sweeps over all contacts. In each a contact takes a share of its particles'
 // inertia, one over their number, so that none overshoots: a projected gradient descent, which goes on beyond each step
 // by a part of it until that turns back (Beck and Teboulle 2009; O'Donoghue and Candes 2015). Energy is never more than
-// without rolling friction. Nothing depends on the order of contacts, or on ranks.
+// without rolling friction. Nothing depends on the order of contacts, and on ranks no more than sweeps leave undone.
 #pragma once
 
 #include <vector>

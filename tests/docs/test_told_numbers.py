@@ -179,6 +179,9 @@ def test_which_rolling_model_is_nearest_and_when_a_layer_flows():
     words = ", ".join(f"{flow[model]:.0f} (`{model}`)" for model in ("cdt", "epsd2", "rvd"))
     assert f"begins to flow at {words} and {flow['own_spin']:.0f} degrees (`own_spin`)" in page
     assert "not told from `own_spin`" in re.search(r"\* `rvd`: [^*]*", told("tilted_bed_results.md"))[0]
+    scatter = table("tilted_bed.csv").groupby("model")["flow_angle_deg"].agg(lambda each: each.max() - each.min())
+    assert f"scatter over {scatter['own_spin']:.0f} degrees, as those of `rvd` do" in page
+    assert round(scatter["own_spin"]) == round(scatter["rvd"])
     assert f"creeps at {creep['cdt']:.1f} mm/s, under the others at {creep.drop('cdt').max():.3f} and less" in page
 
 
@@ -256,7 +259,9 @@ def test_why_the_critical_scale_differs():
     assert where["one size of particles"].startswith("below 4, if anywhere") and alone["3"] > 1.0
     assert f"is 3 or below ({where['one size, rolling as rvd'].removeprefix('below 3 ')}, by the forms" in page
     for_study = where["the study with the source's pair"].removesuffix(" to beyond 8")
-    assert f"from {float(for_study):.1f} or beyond to 3 or below" in page
+    assert f"from {float(for_study):.1f} or beyond to below 4;" in page
+    of_cdt = where["one size, rolling on relative spin"].removesuffix(" to beyond 8")
+    assert float(of_cdt) > 6.0 and "beyond 6 again" in page
     alike = rows("particle_size_one_size_results_quick.md", "setting", "particle scale", "layers of particles")
     of_study = alike.set_index("setting")["wear over plain"].astype(float)
     assert f"(particle_size_one_size_results_quick.md): {of_study['S4']:.2f} at scale 4, {of_study['S12']:.2f}" in page

@@ -231,8 +231,8 @@ def test_a_bed_falls_and_comes_to_rest(model, ranks, tmp_path):
 )
 @pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
 def test_a_restart_goes_on_as_if_nothing_had_been(model, deck, tmp_path):
-    """They keep nothing from step to step: spins after a restart are those of a run in one piece, though under rvd many
-    contacts share friction out anew.
+    """What rvd keeps from step to step it finds again: spins after a restart are those of a run in one piece, though
+    under it many contacts share friction out anew.
     """
     whole = deck(model)
     start, run = whole.rsplit("run ", 1)
