@@ -167,7 +167,10 @@ def save(figure: Figure, path: str | Path) -> None:
 
 
 def fold_labels(figure: Figure) -> None:
-    """Write labels of vertical axes in two lines where they would be longer than their axes are high, by far."""
+    """Write labels of vertical axes in two lines where they would be longer than their axes are high, by far.
+
+    A formula between two $ is not broken.
+    """
     engine = figure.get_layout_engine()
     share = engine.get().get("rect", WHOLE)[3] if engine else 1.0
     for axes in figure.axes:
@@ -178,7 +181,7 @@ def fold_labels(figure: Figure) -> None:
         rows = sum(ratios[place.rowspan.start : place.rowspan.stop]) / sum(ratios)
         room = (share * figure.get_figheight() - AXES_ROOM) * rows
         lines = textwrap.wrap(text, math.ceil(FOLDED * len(text)))
-        if len(text) * CHARACTER > room and len(lines) == 2:
+        if len(text) * CHARACTER > room and len(lines) == 2 and lines[0].count("$") % 2 == 0:
             axes.set_ylabel("\n".join(lines))
 
 

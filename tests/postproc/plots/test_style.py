@@ -21,7 +21,10 @@ def test_a_figure_of_any_layout_is_saved(tmp_path):
 
 @pytest.mark.parametrize(
     ("height", "panels", "label", "lines"),
-    [(5.0, 1, LONG, 1), (3.2, 1, LONG, 2), (5.0, 2, LONG, 2), (3.2, 1, "Force (N)", 1), (2.0, 1, "a" * 60, 1)],
+    [
+        *((5.0, 1, LONG, 1), (3.2, 1, LONG, 2), (5.0, 2, LONG, 2), (3.2, 1, "Force (N)", 1), (2.0, 1, "a" * 60, 1)),
+        (2.5, 1, r"Spin of particles · $R\, /\, \sqrt{E^* / \rho}$ (-)", 1),
+    ],
 )
 def test_a_label_longer_than_its_axes_is_folded(tmp_path, height, panels, label, lines):
     """No word of it is lost, and what cannot be folded stays; its text then lies within the figure."""

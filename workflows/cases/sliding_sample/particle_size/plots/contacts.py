@@ -30,7 +30,10 @@ ASIDE = 0.15  # particle scales, that marks of two kinds stand to the left and t
 PACKING_SIZE, MEAN_SIZE = 2.5, 6.0  # points, of marks: of a packing among several, of their mean
 NORMAL = {"overlap": "Overlap / R (-)", "normal_force": "Normal force / (E* R²) (-)"}
 # Not the torque: where a sphere has stopped turning, type A turns it to and fro from step to step.
-TANGENTIAL = {"tangential_force": "Tangential force\n/ (E* R²) (-)", "spin": r"Spin · $R\, /\, \sqrt{E^*/\rho}$ (-)"}
+TANGENTIAL = {
+    "tangential_force": "Tangential force\n/ (E* R²) (-)",
+    "spin": "Spin\n· $R\\, /\\, \\sqrt{E^*/\\rho}$ (-)",
+}
 COLLISION_TITLES = {"pair": "two particles, head-on", "wall": "particle and wall, head-on"}
 
 
