@@ -7,7 +7,7 @@ import math
 from bulkwear.workflows.cases.circular_tester.decks import CHANNEL, channel_length, half_width, mean_radius
 from bulkwear.workflows.config.run_checks import CheckedRun, reaches, shown_inside
 
-LEAST_LAYERS = 3.0  # of particles over the sample and under it: fewer are no bed
+LEAST_LAYERS = 3.0  # of particles over the sample: fewer are no bed
 # -, largest diameters in the quarter of a channel whose level is looked at: shorter ones often hold no particle.
 LEVEL_QUARTER_DIAMETERS = 2.0
 # -, room beside the sample and under it, in largest diameters: particles pass there without a jam.
@@ -33,8 +33,8 @@ def needed_over(run: CheckedRun) -> float:
 
 
 def needed_under(run: CheckedRun) -> float:
-    """Return the least bed (m) under the sample's lower end: three layers, and room for two of the largest."""
-    return max(needed_over(run), SIDE_DIAMETERS * max(run.parameters["particle"]["diameters_m"]))
+    """Return the least bed (m) under the sample's lower end: room for two of the largest."""
+    return SIDE_DIAMETERS * max(run.parameters["particle"]["diameters_m"])
 
 
 def _rooms(run: CheckedRun) -> list[tuple[float, float]]:
