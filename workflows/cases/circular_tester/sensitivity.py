@@ -30,7 +30,7 @@ FACTORS = {
     "height of the bed, mm": (("tester", "bed_height_m"), 1e3),
     "depth of the sample, mm": (("tester", "depth_m"), 1e3),
     "thickness of the sample, mm": (("sample", "thickness_m"), 1e3),
-    "tilt of the sample, degrees": (("tester", "incline_rad"), 180.0 / np.pi),
+    "incline of the sample, degrees": (("tester", "incline_rad"), 180.0 / np.pi),
     "particle scale": (("particle", "scale"), 1.0),
     "shape of the machine": (("tester", "shape"), None),
     "size of elements, mm": (("sample", "element_size_m"), 1e3),

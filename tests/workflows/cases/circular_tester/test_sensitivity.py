@@ -37,6 +37,7 @@ FACTORS = {
     "bed": 0.8,
     "thin": 1.02,
     "rvd": 1.05,
+    "incline": 0.9,
 }  # what each change does to every number
 EXACT = 1e-9
 
@@ -59,10 +60,11 @@ def table(settings):
 
 def test_each_thing_is_changed_alone_and_with_two_others(settings):
     """Four changes of one thing, and of the others three at a time: no two of the four go together more often. A second
-    rolling model stands beside them, alone.
+    rolling model and the other incline stand beside them, alone.
     """
     changes = dict(changes_of(settings))
     assert changes.pop("rvd") == {"rolling model": "rvd"}
+    assert changes.pop("incline") == {"incline of the sample, degrees": "-2"}
     assert sorted(map(len, changes.values())) == [0, 1, 1, 1, 1, 3, 3, 3, 3] and not changes[REFERENCE]
     names = sorted({name for each in changes.values() for name in each})
     signs = np.array([[1 if name in each else -1 for name in names] for pair, each in changes.items() if each])
@@ -105,7 +107,7 @@ def test_what_a_change_does_comes_back(table, settings):
     """Of numbers that are products of factors the factors are found, without an error left."""
     effects = effects_table(table, changes_of(settings))
     words = {"friction of": "friction", "rolling model own_spin": "rolling", "rolling model rvd": "rvd"}
-    words |= {"height of the bed": "bed", "thickness": "thin"}
+    words |= {"height of the bed": "bed", "thickness": "thin", "incline": "incline"}
     assert len(effects) == len(CLAIMS) * len(FACTORS)
     for row in effects.itertuples():
         name = next(name for start, name in words.items() if row.change.startswith(start))
@@ -201,7 +203,7 @@ def test_the_figure_shows_every_value_and_setting(table, settings):
     figure = reached_by_setting(table, settings, changes_of(settings), ["tiny"])
     texts = [text.get_text() for text in figure.axes[0].texts]
     assert sum(text == f"{MIDDLE['plain_force']:.3g}" for text in texts) >= 1
-    assert texts.count("own_spin") == 4 and texts.count("cdt") == 5 and texts.count("rvd") == 1
+    assert texts.count("own_spin") == 4 and texts.count("cdt") == 6 and texts.count("rvd") == 1
     labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
     assert labels[len(CLAIMS)] == "reached, of how many"
     assert f"{table[table['pair'] == REFERENCE]['reached'].sum()}/{len(CLAIMS)}" in texts
