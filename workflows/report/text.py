@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 NO_UNIT = "-"
 HARDNESS = "wall_hardness_pa"  # of what wears, where it is known
+ROUND_OFF_PERCENT = 1e-9  # %, of a run's worn volume: less is round-off of what was taken off step by step
 WITH_EXPONENT = 1e6  # from which numbers are told with one
 UNDEFINED = "\u2013"  # shown for numbers that are not there
 # suffix of a key -> unit; the longest that fits counts, so they stand in that order
@@ -194,11 +195,12 @@ def _wear_simplifications(
     carried = 100.0 * largest_carried_share(summary)
     if math.isnan(carried):
         return [law, acceleration]
+    left = f"up to {carried:.3g} % of a run's worn volume is not yet applied to the shape"
     caps = (
         "Capped steps",
         f"In one wear cycle a node moves at most {wear['largest_step_edge_fraction']:g} of its shortest edge, and at "
         f"most {further_cap}. The rest is carried into later cycles: at the end "
-        f"up to {carried:.3g} % of a run's worn volume is not yet applied to the shape.",
+        f"{left if carried > ROUND_OFF_PERCENT else 'nothing is left'}.",
     )
     return [law, acceleration, caps, *worn_through_words(wear, summary)]
 

@@ -29,6 +29,7 @@ from bulkwear.workflows.cases.circular_tester.room import (
 )
 from bulkwear.workflows.config.patterns import dimension_columns
 from bulkwear.workflows.config.run_checks import (
+    MOST_STEPS,
     CheckedRun,
     Fault,
     deeper_than,
@@ -50,6 +51,9 @@ LEVEL_DIAMETERS = 0.5  # -, of bed and consolidator apart, in median diameters: 
 # centres keep 0.6 off, begin to touch them; at 0.36 they were kicked, at 0.46 lost.
 CHORD_DIAMETERS = 0.35
 LEAST_STEPS = 10.0  # in which the trough passes the smallest particle; in fewer a contact is over before it is resolved
+SPIN_UPS = (
+    1.5  # -, times as long as friction alone takes to bring a bed to the speed of the trough it turns before runs start
+)
 ROUNDING = 1e-9  # relative; of revolutions times cycles
 
 
@@ -141,6 +145,32 @@ def _too_fast(run: CheckedRun, most: float, reason: str) -> Fault | None:
     if run.parameters["sliding"]["angular_speed_rad_per_s"] <= most:
         return None
     return "sliding.angular_speed_deg_per_s", f"at most {math.floor(math.degrees(most))} deg/s, {reason}"
+
+
+def bed_spun_up(run: CheckedRun) -> Fault | None:
+    """The bed turns longer before runs start than friction takes to bring it to the trough's speed."""
+    sliding = run.parameters["sliding"]
+    friction = min(run.parameters[name]["contact"]["sliding_friction"] for name in ("floor_material", "particle"))
+    if friction <= 0.0:
+        return "bed.floor_material", "a wall on which the particles of bed.material have friction, which turns them"
+    spin_up = sliding["velocity_m_per_s"] / (friction * GRAVITY)
+    least = _rounded_up(SPIN_UPS * spin_up / run.parameters["derived"]["revolution_s"])
+    if sliding["steady_revolutions"] >= least:
+        return None
+    return "sliding.steady_revolutions", (
+        f"at least {least:g}, {SPIN_UPS:g} times the {spin_up:.3g} s in which friction brings the bed to the trough's"
+        f" {sliding['velocity_m_per_s']:.3g} m/s"
+    )
+
+
+def turns_countable(run: CheckedRun) -> Fault | None:
+    """Bed, run-in and run have no more time steps than the solver can be told to make."""
+    derived, sliding = run.parameters["derived"], run.parameters["sliding"]
+    most = MOST_STEPS * derived["largest_time_step_s"] / derived["revolution_s"]
+    for key in ("steady_revolutions", "run_in_revolutions", "revolutions"):
+        if sliding[key] > most:
+            return f"sliding.{key}", f"at most {math.floor(most)}, {MOST_STEPS} time steps, which the solver counts"
+    return None
 
 
 def level_measured(run: CheckedRun) -> Fault | None:
@@ -280,6 +310,8 @@ TESTER_CHECKS = (
     cycle_long_enough,
     speed_resolved,
     bed_stays_down,
+    turns_countable,
+    bed_spun_up,
     level_measured,
     physical_modulus_known,
 )

@@ -109,13 +109,13 @@ def series_of(run: TesterRun) -> pd.DataFrame:
 
 
 def bed_in_use(run: TesterRun) -> dict[str, str | float]:
-    """Return run, bed, and mass and level of the bed past the consolidator (kg, mm) with the sample in it: over the
-    run-in, before wear is counted.
+    """Return run, bed, and mass, level of the bed past the consolidator and height over the sample's middle (kg, mm)
+    with the sample in it: over the run-in, before wear is counted.
     """
     thermo = thermo_rows(cycle_folders(run.folder)[0] / LOG)
-    level = MILLIMETRES * float(thermo["level_h"].mean())
-    words = {"run": run.name, "bed": run.bed_folder.name}
-    return words | {"mass_in_use_kg": float(thermo["bed_mass"][-1]), "level_in_use_mm": level}
+    level, over = (MILLIMETRES * float(thermo[name].mean()) for name in ("level_h", "sample_h"))
+    words = {"run": run.name, "bed": run.bed_folder.name, "mass_in_use_kg": float(thermo["bed_mass"][-1])}
+    return words | {"level_in_use_mm": level, "over_sample_in_use_mm": over}
 
 
 def lowest_layer(folder: Path) -> pd.DataFrame:

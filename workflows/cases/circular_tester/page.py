@@ -26,7 +26,8 @@ RUNS_NOTE = (
     "estimate from the trough's volume; the solver's number is under Cost. Pressure: of a bed at rest of that depth."
 )
 IN_USE_NOTE = (
-    "In use: mass, and mean level past the consolidator, while the sample that took the block's place is run in."
+    "In use: mass, mean level past the consolidator and mean height over the sample's middle (of both, twice that of "
+    "the centre of mass), while the sample that took the block's place is run in."
 )
 SENSITIVITY_NOTE = (
     "Over: value over the nearest one that agrees, 1 where it does itself. Reached: whether the value agrees; of one "
@@ -149,7 +150,8 @@ def remarks(study: Study) -> list[str]:
     accelerated = coefficient > FAR_ABOVE * material_coefficient()
     far = ", far above the material's: a revolution stands for many hours" if accelerated else ""
     said.append(f"wear coefficient {coefficient:g} 1/Pa{far}")
-    return [*said, *dict.fromkeys(unlike_source(study).values())]
+    unlike = list(dict.fromkeys(unlike_source(study).values()))
+    return [*said, *(each for each in unlike if not any(other.startswith(f"{each}; ") for other in unlike))]
 
 
 def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:

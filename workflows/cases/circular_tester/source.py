@@ -41,9 +41,10 @@ def unlike_source(study: Study) -> dict[str, str]:
     varied = {row["row"] for row in study.design_rows if row["series"] == VARIED}
     found: dict[str, str] = {}
     for run in (run for run in study.runs if run.row not in varied):
-        why = next(_differences(run.parameters), None)
-        if why:
-            found.setdefault(surface_name(run.parameters["pattern"]), why)
+        if why := list(_differences(run.parameters)):
+            first, *others = why
+            said = "; ".join([first, *(each.removeprefix("found ") for each in others)])
+            found.setdefault(surface_name(run.parameters["pattern"]), said)
     return found
 
 

@@ -229,6 +229,15 @@ def test_the_trough_is_closed_and_holds_the_bed(tmp_path):
             {"sliding": {"cycles_per_revolution": 200}},
             "cycles_per_revolution is 200 for row plain, allowed is at most 37",
         ),
+        (
+            # 5.17 m/s in 2.51 s of friction 0.21, and half as long again: 251 revolutions of 30 degrees
+            {"sliding": {"angular_speed_deg_per_s": 2000}},
+            "sliding.steady_revolutions is 4 for row plain, allowed is at least 250.",
+        ),
+        (
+            {"sliding": {"angular_speed_deg_per_s": 0.1, "steady_revolutions": 1000}},
+            "sliding.steady_revolutions is 1000 for row plain, allowed is at most 246, 2147483647 time steps",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused_in_one_sentence(changes, sentence, monkeypatch):
@@ -250,10 +259,17 @@ RING = {"shape": "ring"}
         # chords of 50 mm lie 0.35 of 6.36 mm inside such a circle
         ("tester.outer_radius_mm", 140, 141, {"particle_scale": 2, "tester": {**RING, "inner_radius_mm": 60}}),
         # ten steps of 3.45e-5 s for a particle of 8.48 mm at 148 mm
-        ("sliding.angular_speed_deg_per_s", 9600, 9400, {"sliding": {"revolution_deg": 150}}),
-        ("sliding.angular_speed_deg_per_s", 406, 405, {"tester": RING}),  # 7.07 rad/s: gravity at 196 mm
+        (
+            "sliding.angular_speed_deg_per_s",
+            9600,
+            9400,
+            {"sliding": {"revolution_deg": 360, "steady_revolutions": 999}},
+        ),
+        # 7.07 rad/s: gravity at 196 mm
+        ("sliding.angular_speed_deg_per_s", 406, 405, {"tester": RING, "sliding": {"steady_revolutions": 20}}),
         ("wear.patch_radius_mm", 15.1, 15, {"sample": {"width_mm": 40, "length_mm": 30}}),  # half of the shorter side
-        ("sliding.steady_revolutions", 1.46, 1.47, {}),  # the last one, and a quarter of 56 degrees in ones of 30
+        # the last one, and a quarter of 56 degrees in ones of 30
+        ("sliding.steady_revolutions", 1.46, 1.47, {"sliding": {"angular_speed_deg_per_s": 90}}),
         ("sliding.steady_revolutions", 3.99, 4, {"tester": RING}),
     ],
 )

@@ -245,6 +245,11 @@ def test_tables_are_made_of_the_runs(finished, tables):
     assert set(used.index) == set(ROWS) and set(used["bed"]) == {"bed_plain"}
     assert used["mass_in_use_kg"].tolist() == pytest.approx([bed["mass_found_kg"]] * 2, rel=1e-3)  # by the log's digits
     assert (used["level_in_use_mm"] - bed["level_found_mm"]).abs().max() < 0.5 * bed["level_tolerance_mm"]
+    heights = tables["series"].dropna(subset="bed_height_m")
+    turned = finished.study.settings["sliding"]["steady_revolutions"]
+    run_in = heights[(heights["revolution"] > turned) & (heights["worn_revolution"] < 0.0)]
+    over = 1e3 * run_in.groupby("run")["bed_height_m"].mean()
+    assert used["over_sample_in_use_mm"].to_dict() == pytest.approx(over.to_dict(), rel=0.02)  # the first row left out
     compared = tables["comparison"]
     plain = compared[(compared["hours"] == 56) & (compared["quantity"] == "plain volume")]
     assert np.isnan(plain["ours"].iloc[0]) and "more than 2 times" in plain["note"].iloc[0]  # it is 5000 revolutions

@@ -54,10 +54,19 @@ def test_shipped_studies_are_the_sources(name, fidelity):
     ],
 )
 def test_pattern_and_machine_are_compared(changes, surfaces, words):
-    """The first difference is told, of the machine for both samples; it stands on every figure."""
+    """The difference is told, of the machine for both samples; it stands on every figure."""
     study = study_of(**changes)
     assert unlike_source(study) == dict.fromkeys(surfaces, words)
     assert (words in remarks(study)) == bool(surfaces)
+
+
+def test_all_that_differs_is_told():
+    """Of machine and pattern in one remark, in which what both samples have stands once."""
+    study = study_of(tester={"depth_mm": 60, "incline_deg": 10}, pattern={"major_radius_mm": 4})
+    machine = "found with tester.depth_mm 60, the source's is 90; with tester.incline_deg 10, the source's is 2"
+    pattern = "of bumps with major radius 4 mm, the source's is 8 mm"
+    assert unlike_source(study) == {"plain": machine, "convex": f"{machine}; {pattern}"}
+    assert [said for said in remarks(study) if said.startswith("found")] == [f"{machine}; {pattern}"]
 
 
 def test_what_a_varied_row_changes_does_not_count():

@@ -260,6 +260,8 @@ def test_nothing_is_said_of_caps_where_no_shape_was_worn(tmp_path):
         assert "Capped steps" not in said and "The shape is kept as built." in said["Hours from seconds"]
         both = pd.concat([kept, kept.assign(carried_volume_m3=1.0, worn_volume_m3=4.0)])
         assert "25 %" in dict(simplifications(page_parameters(study), both, page))["Capped steps"]
+        rounded = kept.assign(carried_volume_m3=-1e-18, worn_volume_m3=4.0)
+        assert dict(simplifications(page_parameters(study), rounded, page))["Capped steps"].endswith("nothing is left.")
 
 
 @pytest.mark.parametrize(
