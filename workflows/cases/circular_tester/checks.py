@@ -41,6 +41,7 @@ from bulkwear.workflows.config.run_checks import (
     pattern_fits,
     physical_modulus_known,
     reaches,
+    shown_inside,
 )
 from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
@@ -54,6 +55,7 @@ LEAST_STEPS = 10.0  # in which the trough passes the smallest particle; in fewer
 SPIN_UPS = (
     1.5  # -, times as long as friction alone takes to bring a bed to the speed of the trough it turns before runs start
 )
+MOST_CHANNEL_DEG = 360.0  # of the annulus, all of it
 ROUNDING = 1e-9  # relative; of revolutions times cycles
 
 
@@ -87,10 +89,13 @@ def sample_between_walls(run: CheckedRun) -> Fault | None:
         least = tester["inner_radius_m"] + sample["width_m"] + 2.0 * room
         reason = "so that two of the largest particles pass on either side of the sample"
         return "tester.outer_radius_mm", f"at least {millimetres(least)}, {reason}"
+    wider = tester["outer_radius_m"] - sample["width_m"] - 2.0 * room
+    given = wider > 0.0 and is_stronger(run, "tester.inner_radius_mm", "sample.width_mm")
+    trough = f", or a tester.inner_radius_mm of at most {shown_inside(wider, -1)}" if given else ""
     return (
         "sample.width_mm",
         f"at most {millimetres(largest)}, so that two of the largest particles ({millimetres(0.5 * room)}) pass "
-        f"between sample and wall{smaller_scale(run)}",
+        f"between sample and wall{trough if tester['shape'] == CHANNEL else ''}{smaller_scale(run)}",
     )
 
 
@@ -102,6 +107,10 @@ def sample_in_channel(run: CheckedRun) -> Fault | None:
     if tester["shape"] != CHANNEL or channel_length(tester) >= max(twice, quarters):
         return None
     angle = _rounded_up(math.degrees(max(twice, quarters) / mean_radius(tester)))
+    longest = math.pi * mean_radius(tester) - sample["length_m"] - tester["consolidator_flat_m"]
+    if angle > MOST_CHANNEL_DEG and twice >= quarters and longest > 0.0:
+        reason = f"so that a channel of {MOST_CHANNEL_DEG:g} degrees is twice as long as sample and consolidator"
+        return "tester.consolidator_ramp_mm", f"at most {shown_inside(longest, -1)}, {reason}"
     reason = "twice the length of sample and consolidator" if twice >= quarters else "eight of the largest particles"
     scale = "" if twice >= quarters else smaller_scale(run)
     return "tester.channel_deg", f"at least {angle:g} degrees, {reason}{scale}"

@@ -235,6 +235,10 @@ def test_the_trough_is_closed_and_holds_the_bed(tmp_path):
             "sliding.steady_revolutions is 4 for row plain, allowed is at least 250.",
         ),
         (
+            {"tester": {"consolidator_ramp_mm": 2000}},
+            "tester.consolidator_ramp_mm is 2000 for row plain, allowed is at most 414.955 mm, so that a channel of",
+        ),
+        (
             {"sliding": {"angular_speed_deg_per_s": 0.1, "steady_revolutions": 1000}},
             "sliding.steady_revolutions is 1000 for row plain, allowed is at most 246, 2147483647 time steps",
         ),
@@ -436,6 +440,7 @@ def test_work_is_that_of_beds_and_runs():
 WAYS = {  # out of a refusal: the setting, and the bound that a sentence names
     "particle_scale": r"particle_scale of at most ([\d.]+\d)",
     "tester.depth_mm": r"tester\.depth_mm of at most ([\d.]+) mm",
+    "tester.inner_radius_mm": r"tester\.inner_radius_mm of at most ([\d.]+) mm",
     "tester.incline_deg": r"tester\.incline_deg of \S+ to ([\d.]+\d)",
 }
 
@@ -445,9 +450,18 @@ WAYS = {  # out of a refusal: the setting, and the bound that a sentence names
     [
         ({"particle_scale": 8}, "tester.bed_height_mm", ["particle_scale", "tester.depth_mm"]),
         ({"particle_scale": 10}, "sample.width_mm", ["particle_scale"]),
+        ({"tester": {"inner_radius_mm": 400}}, "sample.width_mm", ["tester.inner_radius_mm"]),
         ({"particle_scale": 9, "tester": {"shape": "ring"}}, "sample.width_mm", ["particle_scale"]),
-        ({"tester": {"incline_deg": 15}}, "tester.bed_height_mm", [*WAYS]),
-        ({"tester": {"incline_deg": -18}}, "tester.bed_height_mm", [*WAYS]),
+        (
+            {"tester": {"incline_deg": 15}},
+            "tester.bed_height_mm",
+            ["particle_scale", "tester.depth_mm", "tester.incline_deg"],
+        ),
+        (
+            {"tester": {"incline_deg": -18}},
+            "tester.bed_height_mm",
+            ["particle_scale", "tester.depth_mm", "tester.incline_deg"],
+        ),
         ({"tester": {"depth_mm": 110}}, "tester.bed_height_mm", ["particle_scale", "tester.depth_mm"]),
         ({"tester": {"depth_mm": 40}}, "tester.depth_mm", ["particle_scale"]),
     ],
