@@ -17,6 +17,7 @@ from bulkwear.workflows.cases.circular_tester.decks import (
     mean_radius,
 )
 from bulkwear.workflows.cases.circular_tester.room import (
+    LEVEL_DIAMETERS,
     LEVEL_QUARTER_DIAMETERS,
     PUSHED_DIAMETERS,
     SIDE_DIAMETERS,
@@ -47,7 +48,6 @@ from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
 VOLUME, VARIED = "volume", "varied"  # series of the design
 ALONE = ("row", "surface")  # columns in which the rows of a pair differ
-LEVEL_DIAMETERS = 0.5  # -, of bed and consolidator apart, in median diameters: the plate cuts no layer off, misses none
 # -, how far the chords of a ring's walls lie inside their circle, in largest diameters: at 0.1 poured particles, whose
 # centres keep 0.6 off, begin to touch them; at 0.36 they were kicked, at 0.46 lost.
 CHORD_DIAMETERS = 0.35

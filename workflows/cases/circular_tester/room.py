@@ -14,6 +14,7 @@ LEVEL_QUARTER_DIAMETERS = 2.0
 SIDE_DIAMETERS = 2.0
 # -, rise of the consolidator, in largest diameters: it pushes particles that lie on the bed by their middle.
 PUSHED_DIAMETERS = 0.5
+LEVEL_DIAMETERS = 0.5  # -, of bed and consolidator apart, in median diameters: the plate cuts no layer off, misses none
 HUNDREDTHS = 100.0  # of a scale or a degree, to which a bound in a sentence is rounded
 
 
@@ -61,9 +62,12 @@ def smaller_scale(run: CheckedRun) -> str:
     """Return the particle scale with which all particles have room, in words after the least length that a run has;
     nothing where there is none.
     """
-    scale = run.parameters["particle"]["scale"]
+    particle, tester = run.parameters["particle"], run.parameters["tester"]
+    scale = particle["scale"]
     most = _rounded_down(scale * min(room / least for room, least in _rooms(run)))
-    return f", or a particle_scale of at most {most:g}" if 1.0 <= most < scale else ""
+    apart = LEVEL_DIAMETERS * particle["median_diameter_m"] * most / scale
+    levelled = reaches(apart, abs(tester["consolidator_level_m"] - tester["bed_height_m"]))
+    return f", or a particle_scale of at most {most:g}" if 1.0 <= most < scale and levelled else ""
 
 
 def flatter(run: CheckedRun) -> str:

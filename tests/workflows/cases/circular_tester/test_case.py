@@ -451,6 +451,8 @@ WAYS = {  # out of a refusal: the setting, and the bound that a sentence names
         ({"particle_scale": 8}, "tester.bed_height_mm", ["particle_scale", "tester.depth_mm"]),
         ({"particle_scale": 10}, "sample.width_mm", ["particle_scale"]),
         ({"tester": {"inner_radius_mm": 400}}, "sample.width_mm", ["tester.inner_radius_mm"]),
+        # a plate 7 mm over the bed is more than half of a smaller particle over it
+        ({"tester": {"depth_mm": 110, "consolidator_level_mm": 157}}, "tester.bed_height_mm", ["tester.depth_mm"]),
         ({"particle_scale": 9, "tester": {"shape": "ring"}}, "sample.width_mm", ["particle_scale"]),
         (
             {"tester": {"incline_deg": 15}},
