@@ -47,11 +47,11 @@ def test_what_presses_on_the_tester_and_how_fast_it_passes():
     runs = rows(results, "run", "series", "surface").query("series == 'volume' and surface == 'plain'")
     bed = runs["bed over floor velocity"].astype(float).mean()
     share = speed / (0.395 * math.pi / 2.0)  # the trough's mean radius (m), 90 degrees a second
-    assert f"{speed:.2f} m/s, {share:.2f} of the trough's speed, where the whole bed has {bed:.2f};" in page
+    assert f"{speed:.2f} m/s, {share:.2f} of the trough's speed, where the whole bed has {bed:.2f}." in page
 
 
 def test_how_much_lower_bumps_of_the_tester_are():
-    """Losses of the bumps that the laboratory measured, and over the measured ones of all settings."""
+    """Losses of the bumps that the laboratory measured."""
     page, found = told("circular_tester.md"), table("published/circular_tester_results_quick.csv").set_index("finding")
     told_of = [found.loc[f"Largest loss of {bump} after 240.3 mm3", "found"] for bump in ("C11", "C13", "C15")]
     losses = [re.match(r"(\S+) mm \(95 % interval (\S+) to (\S+),", each) for each in told_of]
@@ -61,10 +61,20 @@ def test_how_much_lower_bumps_of_the_tester_are():
     hours = rows("circular_tester_results_quick.md", "hours", "quantity").set_index(["hours", "quantity"])["ours"]
     volume, loss = (float(hours["184", name]) for name in ("convex volume", "largest loss of C11"))
     assert f"lost {float(f'{volume:.2g}'):.0f} mm³, C11 is {loss:.1f} mm lower." in page
-    settings = table("tables/tester_sensitivity_quick_sensitivity.csv").query("quantity.str.startswith('Largest')")
-    measured = settings["published"].str.extract(r"published (\S+)\)")[0].astype(float)
-    over = settings["value"] / measured
-    assert f"losses of bumps ({over.min():.1f} to {over.max():.1f} times the measured ones)" in page
+
+
+def test_what_the_incline_of_the_tester_does():
+    """Forces and volumes with either end up, heaps over samples of both, and of 2 and 10 mm."""
+    values, page = reached()[0], told("circular_tester.md")
+    force, volume = (values[name] for name in ("Normal force, plain", "Volume per revolution, plain"))
+    assert f"bears {force['incline']:.1f} N instead of {force['reference']:.1f} and" in page
+    assert f"{volume['incline']:.1f} mm³ a revolution instead of {volume['reference']:.1f}, under" in page
+    assert f"their mean, {force[['incline', 'reference']].mean():.1f} N, is about the heap's weight" in page
+    heap = table("tables/tester_sensitivity_quick_beds_in_use.csv").set_index("run")["over_sample_in_use_mm"]
+    usual = heap[["plain", "plain-2", "plain-3"]]
+    assert f"({heap['thin-plain']:.0f} mm of {usual.min():.0f} to {usual.max():.0f}, under" in page
+    newtons = 1455.0 * 9.81 * 0.1 * 0.1 / 1e3 * usual.mean()
+    assert abs(force[["incline", "reference"]].mean() / newtons - 1.0) < 0.05 and abs(heap["incline-plain"] - 114) < 2
 
 
 def test_what_settings_of_the_tester_reach():
@@ -83,14 +93,27 @@ def test_what_settings_of_the_tester_reach():
     assert "plain sample's volume, {:.0f} and {:.0f} mm³ a revolution".format(*volume[both]) in page
     assert "the convex one then loses {:.2f} and {:.2f} of it".format(*ratio[both]) in page
     assert f"reaches sliding over travel ({slides[smooth]:.2f}) and the plain layer's spin" in page
+    layer = values["Spin of the lowest layer, plain"]
+    assert f"`own_spin`, {volume['rvd']:.1f} mm³ a revolution and {ratio['rvd']:.2f} of it" in page
+    assert (
+        f"turns the layer twice as fast, {layer['rvd']:.0f} degrees" in page
+        and 1.5 < layer["rvd"] / layer["rolling"] < 2.5
+    )
+    together = volume["friction-rolling-bed"]
+    assert f"together ({together:.1f}, in a bed of 190 mm): either" in page
+    assert f"changed first, {volume['rolling']:.1f} and {volume['friction']:.1f}." in page
     assert f"It loses {volume[smooth]:.0f} mm³ a revolution, its convex sample {ratio[smooth]:.2f} of the plain" in page
 
 
 def test_what_moves_the_volume_of_the_tester():
     """Factors of friction, rolling model, height and thickness with their intervals."""
     found = table("tables/tester_sensitivity_quick_effects.csv").set_index(["quantity", "change"])
-    lines = found.loc["Volume per revolution, plain"].itertuples()
-    friction, rolling, height, thickness = [(line.factor, line.low, line.high) for line in lines]
+    lines = found.loc["Volume per revolution, plain"]
+    changes = ("friction of the", "rolling model own_spin", "height of the bed", "thickness of the")
+    friction, rolling, height, thickness = [
+        lines.loc[next(name for name in lines.index if name.startswith(change)), ["factor", "low", "high"]]
+        for change in changes
+    ]
     page, interval = told("circular_tester.md"), "{:.2f} ({:.2f} to {:.2f})".format
     assert f"{interval(*friction)} and {interval(*rolling).replace(' (', ' times (')} on the plain sample" in page
     assert (

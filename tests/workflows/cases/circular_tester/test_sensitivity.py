@@ -203,7 +203,7 @@ def test_the_figure_shows_every_value_and_setting(table, settings):
     figure = reached_by_setting(table, settings, changes_of(settings), ["tiny"])
     texts = [text.get_text() for text in figure.axes[0].texts]
     assert sum(text == f"{MIDDLE['plain_force']:.3g}" for text in texts) >= 1
-    assert texts.count("own_spin") == 4 and texts.count("cdt") == 6 and texts.count("rvd") == 1
+    assert texts.count("own_\nspin") == 4 and texts.count("cdt") == 6 and texts.count("rvd") == 1
     labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
     assert labels[len(CLAIMS)] == "reached, of how many"
     assert f"{table[table['pair'] == REFERENCE]['reached'].sum()}/{len(CLAIMS)}" in texts

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,8 +18,9 @@ FARTHEST = 2.0  # doublings from the nearest value that agrees at which colours 
 DARK = 0.6  # -, of FARTHEST: from there on text is white
 SHOWN = ("value", "over", "reached", "packings")  # columns of the table
 MISSING = "-"  # in place of a value
-LONGEST_WORD = 5  # characters, bold, that fit under a cell; longer ones are smaller
-LOOK = {"fontsize": 8.0, "ha": "center", "va": "center"}  # of the text of cells
+CHARACTERS = 48  # bold ones that fit side by side in a line of cells
+TWO_LINES = 0.75  # -, size of words of two lines, broken at an underscore
+LOOK: dict[str, Any] = {"fontsize": 8.0, "ha": "center", "va": "center"}  # of the text of cells
 
 
 def reached_by_setting(
@@ -44,14 +46,8 @@ def reached_by_setting(
     for line, column in np.ndindex(off.shape):
         value, there = cells["value"].iloc[line, column], reached.iloc[line, column]
         colour = "white" if abs(off[line, column]) > DARK * FARTHEST else "black"
-        axes.text(
-            column,
-            line,
-            MISSING if np.isnan(value) else f"{value:.3g}",
-            color=colour,
-            fontweight="bold" if there else "normal",
-            **LOOK,
-        )
+        word, weight = MISSING if np.isnan(value) else f"{value:.3g}", "bold" if there else "normal"
+        axes.text(column, line, word, color=colour, fontweight=weight, **_fitting(word, len(pairs)))
         if there:
             axes.add_patch(Rectangle((column - 0.47, line - 0.44), 0.94, 0.88, fill=False, linewidth=0.8))
     said = table.drop_duplicates("key").set_index("key").loc[keys]
@@ -81,6 +77,13 @@ def _published(row: pd.Series) -> str:
     return f"{row.published.partition(' (published')[0].removesuffix(unit).strip()} {unit}".strip()
 
 
+def _fitting(word: str, columns: int) -> dict[str, Any]:
+    """Return the look of a word that fits in a cell of so many columns."""
+    lines = word.split("\n")
+    share = min(1.0 if len(lines) == 1 else TWO_LINES, CHARACTERS / columns / max(map(len, lines)))
+    return LOOK | {"fontsize": share * LOOK["fontsize"]}
+
+
 def _lines_below(
     axes: Axes, lines: Mapping[str, Mapping[str, str]], changes: Mapping[str, Mapping[str, str]], first: int
 ) -> None:
@@ -89,7 +92,7 @@ def _lines_below(
         for column, (pair, word) in enumerate(words.items()):
             changed = number == 0 or name in changes[pair]
             look = {"color": "black", "fontweight": "bold"} if changed else {"color": "#8a8a8a"}
-            size = {"fontsize": LOOK["fontsize"] * min(1.0, LONGEST_WORD / len(word))}
-            axes.text(column, first + number, word, **look, **(LOOK | size))
+            broken = word.replace("_", "_\n")
+            axes.text(column, first + number, broken, **look, **_fitting(broken, len(words)))
     axes.set_ylim(first + len(lines) - 0.5, -0.5)
     axes.axhline(first - 0.5, color="black", linewidth=0.8)
