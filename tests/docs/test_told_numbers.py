@@ -272,6 +272,10 @@ def test_why_the_critical_scale_differs():
         for how in ("as rvd", "on relative spin")
     ]
     assert "takes {:.0f} and {:.0f} % off the ratio at 8".format(*off) in page
+    runs = table("critical_scale.csv").query("particle_scale == 6 and seed == 20220317")
+    wear = runs.pivot(index="candidate", columns="surface", values="wear_mm3_per_m")
+    steps = (wear["convex"] / wear["plain"])[["one size, rolling as rvd, time step 0.1", "one size, rolling as rvd"]]
+    assert "{:.2f} at scale 6, where the same packing has {:.2f}.".format(*steps) in page
 
 
 def test_what_decisions_say_of_softness_and_time_steps():
