@@ -245,6 +245,26 @@ def test_what_the_best_pattern_wears():
     assert f"R5 wears {r5} of plain there, and {interval(*long)} on the source's sample" in page
 
 
+def test_which_frictions_each_rolling_model_asks_for():
+    """Models of relative spin and of own spin ask for other sliding frictions, and reject the pairs of one another."""
+    page = told("calibration.md")
+    found = rows("calibration_models_results.md", "model", "simulations").set_index("model")
+    names = found.columns[found.columns.str.startswith(("sliding", "angle at recommended"))]
+    found = found[names].astype(float).rename(index=lambda name: name.replace(" ", "_"))
+    relative, own = ["cdt", "epsd2"], ["own_spin", "rvd"]
+    low, high = found.loc[relative, "sliding"].agg(["min", "max"])
+    assert f"ask for sliding friction {low:.2f} to {high:.2f}, `own_spin` and `rvd` for" in page
+    assert {f"{each:.2f}" for each in found.loc[own, "sliding"]} == {"0.24"} and "and `rvd` for 0.24;" in page
+    angles = found.loc[[*relative, *own], "angle at recommended deg"]
+    assert "the box gives {:.1f}°, {:.1f}°, {:.1f}° and {:.1f}°, measured".format(*angles) in page
+    of_pairs = rows("calibration_models_results.md", "pair", "sliding", "rolling").set_index("pair")
+    better = of_pairs[[f"under {name.replace('_', ' ')} percent" for name in (*relative, *own)]].astype(float)
+    better.columns = [*relative, *own]
+    assert (better.loc[[f"of {name}" for name in relative], own] > 95.0).all(axis=None)
+    assert (better.loc[[f"of {name}" for name in own], relative] > 95.0).all(axis=None)
+    assert (better.loc["calibrated", relative] > 95.0).all() and (better.loc["calibrated", own] < 95.0).all()
+
+
 def test_why_the_critical_scale_differs():
     """Ratios of convex to plain wear with one size of particles and other rolling models, beside the source's lines."""
     page, key = told("particle_size.md"), ["candidate", "particle scale"]
