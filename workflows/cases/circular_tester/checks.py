@@ -52,9 +52,8 @@ ALONE = ("row", "surface")  # columns in which the rows of a pair differ
 # centres keep 0.6 off, begin to touch them; at 0.36 they were kicked, at 0.46 lost.
 CHORD_DIAMETERS = 0.35
 LEAST_STEPS = 10.0  # in which the trough passes the smallest particle; in fewer a contact is over before it is resolved
-SPIN_UPS = (
-    1.5  # -, times as long as friction alone takes to bring a bed to the speed of the trough it turns before runs start
-)
+# -, times as long as friction alone takes to bring a bed to the speed of the trough it turns before runs start.
+SPIN_UPS = 1.5
 MOST_CHANNEL_DEG = 360.0  # of the annulus, all of it
 ROUNDING = 1e-9  # relative; of revolutions times cycles
 
