@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -43,6 +44,25 @@ def at_least_one(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"found {text!r}, allowed is a whole number from 1 on")
     return int(text)
+
+
+def number_within(low: float, high: float, kind: type = float) -> Callable[[str], float]:
+    """Return what reads a number from low to high of a command line. It raises ArgumentTypeError where it is none.
+
+    kind: int of whole numbers, else float
+    """
+
+    def number(text: str) -> float:
+        try:
+            found = kind(text)
+        except ValueError:
+            found = math.nan
+        if not low <= found <= high:
+            whole = "whole " if kind is int else ""
+            raise argparse.ArgumentTypeError(f"found {text!r}, allowed is a {whole}number from {low:g} to {high:g}")
+        return found
+
+    return number
 
 
 def changed(run: Run, change: Mapping[str, Any]) -> Run:
