@@ -24,7 +24,7 @@ from bulkwear.workflows.config.layers import (
     dotted,
     read_csv_rows,
 )
-from bulkwear.workflows.config.schema import leaves, subschema, validator
+from bulkwear.workflows.config.schema import leaves, load_schema, subschema, validator
 
 if TYPE_CHECKING:
     from jsonschema import ValidationError
@@ -258,7 +258,20 @@ def unknown_key(path: KeyPath, schema: dict[str, Any], found: str = "", noun: st
                 return f"unit {unit} is not allowed for {written}, write {right} {found_key}"
             return f"{written} has no unit, write {right} {found_key}"
     value = f" ({found})" if found else ""
-    return f"{dotted(path)}{value} is no known {noun}, {_nearest(path, known, schema)}"
+    rest = _of_material(path, known) or f", {_nearest(path, known, schema)}"
+    return f"{dotted(path)}{value} is no known {noun}{rest}"
+
+
+def _of_material(path: KeyPath, known: Collection[str]) -> str | None:
+    """Return where a property of a material is given, for one asked of a block that names a material; else None."""
+    naming = next((name for name in known if name.rpartition("_")[-1] == "material"), None)
+    properties = {key for of_one, _ in leaves(load_schema("materials")) for key in of_one[2:]}  # of a kind and a name
+    if naming is None or path[-1] not in properties:
+        return None
+    return (
+        f" but a property of the material that {dotted((*path[:-1], naming))} names, which config/materials.yaml gives,"
+        " or a file of yours as --config materials=<file>"
+    )
 
 
 def _nearest(path: KeyPath, known: dict[str, Any], schema: dict[str, Any]) -> str:

@@ -46,6 +46,13 @@ BAD_KEYS = [
     (
         STUDY,
         "width_mm: 80",
+        "sliding_friction: 0.2",
+        f"{QUICK}: sample.sliding_friction (0.2) is no known key but a property of the material that sample.material"
+        " names, which config/materials.yaml gives, or a file of yours as --config materials=<file>.",
+    ),
+    (
+        STUDY,
+        "width_mm: 80",
         "width_cm: 8",
         f"{QUICK}: unit cm is not allowed for sample.width, write sample.width_mm (found width_cm: 8).",
     ),
