@@ -5,6 +5,8 @@ import re
 
 from tests.support.told import rows, table, told
 
+BUMPS = [f"Largest loss of {bump} after 240.3 mm3" for bump in ("C11", "C13", "C15")]  # findings
+
 
 def reached():
     """Published numbers of the tester by pair of samples (rows) and quantity (columns): values, whether they agree."""
@@ -53,14 +55,16 @@ def test_what_presses_on_the_tester_and_how_fast_it_passes():
 def test_how_much_lower_bumps_of_the_tester_are():
     """Losses of the bumps that the laboratory measured."""
     page, found = told("circular_tester.md"), table("published/circular_tester_results_quick.csv").set_index("finding")
-    told_of = [found.loc[f"Largest loss of {bump} after 240.3 mm3", "found"] for bump in ("C11", "C13", "C15")]
-    losses = [re.match(r"(\S+) mm \(95 % interval (\S+) to (\S+),", each) for each in told_of]
+    losses = [re.match(r"(\S+) mm \(95 % interval (\S+) to (\S+),", each) for each in found.loc[BUMPS, "found"]]
     first, second, third = [[float(value) for value in each.groups()] for each in losses]
     assert "have lost up to {:.2f} mm ({:.2f} to {:.2f}), ".format(*first) in page
-    assert "{:.2f} ({:.2f} to {:.2f}) and {:.2f} ({:.2f} to {:.2f}) of height;".format(*second, *third) in page
-    hours = rows("circular_tester_results_quick.md", "hours", "quantity").set_index(["hours", "quantity"])["ours"]
-    volume, loss = (float(hours["184", name]) for name in ("convex volume", "largest loss of C11"))
-    assert f"lost {float(f'{volume:.2g}'):.0f} mm³, C11 is {loss:.1f} mm lower." in page
+    assert "{:.2f} ({:.2f} to {:.2f}) and {:.2f} ({:.2f} to {:.2f}) of height, three".format(*second, *third) in page
+    measured = [
+        float(value) for value in re.search(r"times the (\S+), (\S+) and (\S+) that are measured", page).groups()
+    ]
+    factors = [loss[0] / lost for loss, lost in zip((first, second, third), measured, strict=True)]
+    assert measured == [float(re.search(r"published (\S+)\)", each)[1]) for each in found.loc[BUMPS, "published"]]
+    assert round(sum(factors) / 3.0) == 3
 
 
 def test_what_the_incline_of_the_tester_does():
