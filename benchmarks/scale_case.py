@@ -113,7 +113,9 @@ CANDIDATES: dict[str, Candidate] = {
         "1.6 m of bed instead of a window; ahead and behind as in the source",
     ),
     "time step 0.2": Candidate(
-        {"solver": {"rayleigh_fraction": 0.2}}, NUMERICAL, "of the Rayleigh time, instead of 0.4; the source's is 0.23"
+        {"solver": {"rayleigh_fraction": 0.2}},
+        NUMERICAL,
+        "of the Rayleigh time, instead of 0.4; the source prints 5e-6 s, 0.23 at scale 1",
     ),
     "elements of 1.5 mm": Candidate(
         {"sample": {"element_size_m": 0.0015}}, OPEN, "instead of 2.5 mm; those of the source's sample are not told"

@@ -296,6 +296,12 @@ def test_why_the_critical_scale_differs():
     wear = runs.pivot(index="candidate", columns="surface", values="wear_mm3_per_m")
     steps = (wear["convex"] / wear["plain"])[["one size, rolling as rvd, time step 0.1", "one size, rolling as rvd"]]
     assert "{:.2f} at scale 6, where the same packing has {:.2f}.".format(*steps) in page
+    of_ours, of_source = [
+        "{:.2f} | {:.2f} | {:.2f} |".format(*each) for each in (ratio[1:], map(source_ratio, (4, 6, 8)))
+    ]
+    assert f"ours, two packings | {of_ours}" in page and f"the source | {of_source}" in page
+    by_hand = [float(cell) for cell in re.search(r"\| 0\.23 \| (\S+) \| (\S+) \|", page).groups()]
+    assert f"is {4.0 + 2.0 * (1.0 - by_hand[0]) / (by_hand[1] - by_hand[0]):.1f} with 0.23" in page
 
 
 def test_what_decisions_say_of_softness_and_time_steps():
