@@ -62,6 +62,7 @@ ALLOWED = {  # of each; faster than that few looks tell of creep
     "end_deg": (CREEPING, 90.0),
     "rate_deg_per_s": (0.1, 10.0),
 }
+DIGITS = ".6g"  # of numbers in the table
 FILE, PAGE, FIGURE = "tilted_bed.csv", "tilted_bed_results.md", "tilted_bed.png"
 
 
@@ -239,7 +240,8 @@ def other_setting(file: Path, asked: Mapping[str, float]) -> str | None:
     if not file.is_file():
         return None
     earlier = pd.read_csv(file)[SETTING].iloc[0]
-    apart = [f"{name} {earlier[name]:g}, not {asked[name]:g}" for name in SETTING if earlier[name] != asked[name]]
+    found = {name: (f"{earlier[name]:{DIGITS}}", f"{asked[name]:{DIGITS}}") for name in SETTING}
+    apart = [f"{name} {of_table}, not {other}" for name, (of_table, other) in found.items() if of_table != other]
     if not apart:
         return None
     return f"{file} holds layers of {', '.join(apart)}: allowed is another folder as --output."
@@ -284,7 +286,7 @@ def main() -> None:
         if not rows:
             parser.error(f"{given.folder}: no layer asked for is finished; without --finished they are tilted.")
         found = all_tilted(rows, tilt, given.folder, given.cores, alone=not given.finished)
-        with_earlier(file, found, KEYS).sort_values(KEYS).to_csv(file, index=False, float_format="%.6g")
+        with_earlier(file, found, KEYS).sort_values(KEYS).to_csv(file, index=False, float_format=f"%{DIGITS}")
     elif not file.is_file():
         parser.error(f"{file} is missing, allowed is --redraw where an earlier run has written it.")
     if not means(runs := pd.read_csv(file)):

@@ -292,3 +292,10 @@ def test_the_table_of_the_repository_holds_the_usual_layers():
     asked = {name: usual[name] for name in FRICTIONS} | asdict(TILT)
     assert list(asked) == SETTING
     assert tilted_bed.other_setting(PACKAGE / "docs/tilted_bed.csv", asked) is None
+
+
+def test_a_setting_of_many_digits_is_found_again(tmp_path):
+    """The table rounds it."""
+    asked = PLAIN | {"sliding_friction": 1.0 / 3.0}
+    made_up().assign(**asked).to_csv(tmp_path / "layers.csv", index=False, float_format=f"%{tilted_bed.DIGITS}")
+    assert tilted_bed.other_setting(tmp_path / "layers.csv", asked) is None
