@@ -64,6 +64,30 @@ def test_by_how_much_a_bed_may_miss_what_is_asked():
     assert (off <= LEVEL_TOLERANCE * grain + DENSITY_TOLERANCE * 1e-3 * sizes["level_asked_mm"]).all()
 
 
+def test_the_critical_scale_and_what_bumps_do_to_a_bed():
+    """Critical scale, forces and sliding over the plain sample, of both pages with three packings of every scale."""
+    page, said = told("particle_size.md"), []
+    sums, slides = [], []
+    for fidelity in ("quick", "standard"):
+        results = f"particle_size_results_{fidelity}.md"
+        found = table(f"published/{results.replace('.md', '.csv')}").set_index("finding")["found"][
+            "critical scale, convex"
+        ]
+        said.append([float(each) for each in re.findall(r"\d[\d.]*(?=[ )])", found.replace("95 %", ""))])
+        sizes = rows(results, "setting", "particle scale", "layers of particles")
+        assert sizes["particle scale"].astype(float).tolist() == [4, 6, 8, 9, 10, 12]
+        sums += sizes["normal force over plain"].astype(float).tolist()
+        slides += sizes["sliding over plain"].astype(float).tolist()
+    words = (
+        "is {:.1f} (95 %: {:.1f} to {:.1f}) by the page at quick and {:.1f} ({:.1f} to {:.1f}) by the one at standard"
+    )
+    assert words.format(*said[0], *said[1]) in page
+    assert (
+        f"is {min(sums):.1f} to {max(sums):.1f} times as large, and sliding {min(slides):.2f} to {max(slides):.2f}"
+        in page
+    )
+
+
 def test_how_loose_coarse_beds_lie():
     """Bulk density by mass and level over the asked one, at three scales, and how many grains the level is too high."""
     beds, page = table("tables/particle_size_quick_beds.csv"), told("particle_size.md")
@@ -161,6 +185,17 @@ def test_which_rolling_model_is_nearest_and_when_a_layer_flows():
     assert (
         set(apart[apart == "yes"].index) == set(off.index[-2:]) and "tell the last two from it, but not `cdt`" in page
     )
+    off_by = found["mean difference"].astype(float)
+    heap = ("Shear angle, draw-down (°)", "Angle of repose (°)", "Discharge time (s)")
+    rvd, own_spin, epsd2 = ([off_by[response, model] for response in heap] for model in ("rvd", "own spin", "epsd2"))
+    assert "off by {:+.1f} degrees, {:+.1f} degrees and {:+.2f} s under `rvd`, by".format(*rvd) in page
+    assert (
+        "by {:+.1f}, {:+.1f} and {:+.2f} under `own_spin` and by {:+.1f}, {:+.1f} and {:+.2f} under `epsd2`".format(
+            *own_spin, *epsd2
+        )
+        in page
+    )
+    assert found.loc[heap[0], "packings"].astype(int).eq(1).all() and ("cdt" not in found.loc[heap[0]].index)
     changes = dict(re.findall(r"(\w+) ([+-]\d+\.\d)", re.search(r"the source changes by [^*]*", told(results))[0]))
     falls = [-float(changes[model]) for model in ("rvd", "own_spin")]
     assert f"rises by {float(changes['by']):.1f} degrees, under `rvd` and `own_spin` it falls by" in page

@@ -30,7 +30,9 @@ BEGIN, END = "<!-- older than the code -->", "<!-- end -->"
 STANDS_FOR = {
     **dict.fromkeys(("demo", "screening", "particle_size", "optimised_pattern", "stiffness.md"), "demo"),
     **dict.fromkeys(("critical_scale_results.md", "travelling_window_results.md", "worn_bump.csv"), "demo"),
-    **dict.fromkeys(("tilted_bed_results.md", "calibration_models_results.md"), "calibration"),
+    **dict.fromkeys(
+        ("tilted_bed_results.md", "calibration_models_results.md", "rolling_models_results.md"), "calibration"
+    ),
 }
 BLOCK = re.compile(rf"{BEGIN}\n.*?{END}\n\n", re.DOTALL)
 

@@ -30,9 +30,9 @@ edited. Older than the code: something that simulations go through has changed s
 in decks or in the solver's ledger. Spot checked: one row, simulated again by newer code, has the same numbers but
 for round-off, and a page whose check was by today's code is not called older. For screening, particle sizes,
 search, softness, critical scale, travelling window and worn bump a row of the demo speaks, whose bed lies between
-walls; for the calibrations and the tilted bed a shear box; both under the studies' own rolling model. `make results
-CHECK=1` does them. Known to move: its numbers by the changes named in the table of changes; of others that is not
-known until the page is redone.
+walls; for the calibrations, the rolling models and the tilted bed a shear box; both under the studies' own rolling
+model. `make results CHECK=1` does them. Known to move: its numbers by the changes named in the table of changes; of
+others that is not known until the page is redone.
 
 | page | simulated (UTC) | by | solver's core hours | older than the code | spot checked | known to move | redone by |
 | --- | --- | --- | --- | --- | --- | --- | --- |
