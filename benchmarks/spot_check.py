@@ -24,7 +24,8 @@ from pathlib import Path
 from benchmarks import rolling_models
 from benchmarks.rolling_models import CALIBRATED, SHEAR_BOX
 from benchmarks.same_results import compare, tables
-from benchmarks.tilted_bed import CASE, REFERENCE
+from benchmarks.tilted_bed import REFERENCE
+from benchmarks.tilted_layer import CASE
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.project import PACKAGE, work_here
 from bulkwear.workflows.engine.provenance import code_of_cases
