@@ -67,7 +67,7 @@ def test_by_how_much_a_bed_may_miss_what_is_asked():
 def test_the_critical_scale_and_what_bumps_do_to_a_bed():
     """Critical scale, forces and sliding over the plain sample, of both pages with three packings of every scale."""
     page, said = told("particle_size.md"), []
-    sums, slides = [], []
+    sums, slides, levels = [], [], []
     for fidelity in ("quick", "standard"):
         results = f"particle_size_results_{fidelity}.md"
         found = table(f"published/{results.replace('.md', '.csv')}").set_index("finding")["found"][
@@ -76,8 +76,10 @@ def test_the_critical_scale_and_what_bumps_do_to_a_bed():
         said.append([float(each) for each in re.findall(r"\d[\d.]*(?=[ )])", found.replace("95 %", ""))])
         sizes = rows(results, "setting", "particle scale", "layers of particles")
         assert sizes["particle scale"].astype(float).tolist() == [4, 6, 8, 9, 10, 12]
+        levels.append(table(f"tables/particle_size_{fidelity}_beds.csv").set_index("bed")["level_found_mm"])
         sums += sizes["normal force over plain"].astype(float).tolist()
         slides += sizes["sliding over plain"].astype(float).tolist()
+    assert levels[0].equals(levels[1]) and "under the same beds: that the two agree" in page
     words = (
         "is {:.1f} (95 %: {:.1f} to {:.1f}) by the page at quick and {:.1f} ({:.1f} to {:.1f}) by the one at standard"
     )
