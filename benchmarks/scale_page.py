@@ -81,11 +81,11 @@ def conclusion(rows: pd.DataFrame) -> str:
         return head
     ranked = others.sort_values("over_reference", ascending=False)
     moved = [f"{row.candidate} ({row.over_reference:.2f})" for row in ranked.itertuples()]
-    reach = [row.candidate for row in ranked.itertuples() if row.ratio_high >= source]
-    sure = [row.candidate for row in ranked.itertuples() if row.wear_over_plain >= source]
+    above = [row.candidate for row in ranked.itertuples() if row.wear_over_plain >= source]
+    holds = [row.candidate for row in ranked.itertuples() if row.ratio_low <= source <= row.ratio_high]
     return (
-        f"{head} Over that ratio, largest first: {', '.join(moved)}. The source's ratio is reached by"
-        f" {', '.join(sure) or 'none of them'}, and lies in or below the interval of {', '.join(reach) or 'none'}."
+        f"{head} Over that ratio, largest first: {'; '.join(moved)}. Above the source's ratio:"
+        f" {'; '.join(above) or 'none of them'}. Intervals that hold it: {'; '.join(holds) or 'none'}."
     )
 
 

@@ -39,6 +39,7 @@ class Claim:
 
     key: name of the claim; finding: in words; source: where it is said; quantity: what is estimated; unit: of it
     direction: the side of `reference` on which it lies; None for a magnitude alone
+    told_side: whether the source tells that side; False where it is a number's own sign
     magnitude: (low, high) as published, equal for one number; None for a direction alone
     margin: how far beyond the magnitude still counts as the same, same unit; 0 without a magnitude
     reach: (low, high) of the range claimed, such as revolutions, and its name and unit in `reach_unit`; None for any
@@ -55,6 +56,7 @@ class Claim:
     margin: float = 0.0
     reach: tuple[float, float] | None = None
     reach_unit: str = ""
+    told_side: bool = True
 
     @property
     def region(self) -> tuple[float, float]:
@@ -185,7 +187,16 @@ def _no_interval(named: Mapping[str, Estimate]) -> str:
 def _open(claim: Claim, named: Mapping[str, Estimate]) -> str:
     """Return what the intervals leave open."""
     if claim.direction and not all(_on_side(claim, one, ERROR_RATE) for one in named.values()):
-        return f"the interval does not exclude {claim.reference:g}: the direction is open"
-    if claim.direction:
-        return "the direction is as claimed, the size is open: the interval passes an end of the margin"
-    return "the interval passes an end of the margin"
+        side = f"the interval does not exclude {claim.reference:g}: the direction is open"
+        return f"{side}, the size is not as claimed" if _is_other_size(claim, named) else side
+    size = "the interval passes an end of the margin"
+    if claim.direction and claim.told_side:
+        return f"the direction is as claimed, the size is open: {size}"
+    return size
+
+
+def _is_other_size(claim: Claim, named: Mapping[str, Estimate]) -> bool:
+    """Return whether an estimate lies outside a claimed magnitude and its margin, on one side."""
+    least, most = claim.region
+    bounds = [one.bounds(ERROR_RATE / len(named)) for one in named.values()]
+    return claim.magnitude is not None and any(low > most or high < least for low, high in bounds)

@@ -187,12 +187,16 @@ def test_page_and_figure(tmp_path, monkeypatch):
     page = publish(tmp_path, rows())
     assert (tmp_path / "critical_scale_results.md").read_text() == page
     assert (tmp_path / "critical_scale.png").stat().st_size > 10_000
-    assert f"| 6 | {OTHER} | open | 1 | 1 |" in page and "reached by none of them" in page
+    assert f"| 6 | {OTHER} | open | 1 | 1 |" in page
+    assert "Above the source's ratio: none of them." in " ".join(page.split())
     assert not (tmp_path / "critical_scale_curves.png").exists()  # one scale
     single = rows(((REFERENCE, (0.5,)), (OTHER, (1.5,))))
     table = comparison(single)
     assert table["ratio_low"].isna().all()
-    assert f"reached by {OTHER}" in conclusion(table)
+    assert f"Above the source's ratio: {OTHER}. Intervals that hold it: none." in conclusion(table)
+    around = table.assign(ratio_low=1.4, ratio_high=1.6)  # the source's lines have 1.48
+    assert f"Intervals that hold it: {OTHER}." in conclusion(around)
+    assert "Intervals that hold it: none." in conclusion(around.assign(ratio_low=1.5))
     said = " ".join(remarks(single, table))
     assert "at most 1 packings of the study with the source's pair" in said and "not known" in said
     assert "not known" in scale_page.scatter_words(table) and "bumps turned" not in page

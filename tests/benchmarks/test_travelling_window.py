@@ -81,6 +81,18 @@ def test_packings_are_what_is_repeated():
     assert table["cheaper_low"][WINDOW] == pytest.approx(cost[WINDOW])  # processor times of these packings are equal
 
 
+def test_runs_that_another_search_repeats_count_once():
+    """Equal to the last digit they add no degrees of freedom; where one differs they are a sample of their own."""
+    full, windows = (FULL, (1.0, 4.0), 1.0, 1.0), (WINDOW, (2.0, 8.0), 1.0, 1.0)
+    alone = comparison(runs(per_bed=(full, windows))).set_index("bed").loc[WINDOW]
+    repeated = comparison(runs(per_bed=(full, (OWN_SEARCH, (1.0, 4.0), 1.0, 1.0), windows))).set_index("bed")
+    assert list(repeated.index) == [FULL, OWN_SEARCH, WINDOW]
+    assert repeated.loc[WINDOW, "ratio_high"] == alone["ratio_high"] and repeated["freedom"].eq(2).all()
+    assert repeated.loc[OWN_SEARCH, "wear_over_full"] == 1.0 and np.isnan(repeated.loc[OWN_SEARCH, "ratio_low"])
+    other = comparison(runs(per_bed=(full, (OWN_SEARCH, (1.0, 4.1), 1.0, 1.0), windows))).set_index("bed")
+    assert other["freedom"].eq(3).all() and np.isfinite(other.loc[OWN_SEARCH, "ratio_low"])
+
+
 def test_cheaper_has_the_interval_of_the_scatter_of_processor_times():
     """Run-ins move both its ends alike. Costs of full bed and window are e and 1/e times 16 s: a ratio of 1."""
     some = runs().assign(bed_processor_s=0.0)

@@ -1,5 +1,6 @@
 """Numbers that pages of docs tell in sentences of their own are those of the tables beside them, rounded."""
 
+import math
 import re
 
 import pandas as pd
@@ -68,18 +69,18 @@ def test_the_critical_scale_and_what_bumps_do_to_a_bed():
     """Critical scale, forces and sliding over the plain sample, of both pages with three packings of every scale."""
     page, said = told("particle_size.md"), []
     sums, slides, levels = [], [], []
-    for fidelity in ("quick", "standard"):
+    for fidelity, scales in (("quick", [4, 6, 8, 9, 10, 12]), ("standard", [3, 4, 6, 8, 9, 10, 12])):
         results = f"particle_size_results_{fidelity}.md"
         found = table(f"published/{results.replace('.md', '.csv')}").set_index("finding")["found"][
             "critical scale, convex"
         ]
         said.append([float(each) for each in re.findall(r"\d[\d.]*(?=[ )])", found.replace("95 %", ""))])
         sizes = rows(results, "setting", "particle scale", "layers of particles")
-        assert sizes["particle scale"].astype(float).tolist() == [4, 6, 8, 9, 10, 12]
+        assert sizes["particle scale"].astype(float).tolist() == scales
         levels.append(table(f"tables/particle_size_{fidelity}_beds.csv").set_index("bed")["level_found_mm"])
         sums += sizes["normal force over plain"].astype(float).tolist()
         slides += sizes["sliding over plain"].astype(float).tolist()
-    assert levels[0].equals(levels[1]) and "under the same beds: that the two agree" in page
+    assert levels[0].equals(levels[1][levels[0].index]) and "finer elements under the same beds, and scale 3" in page
     words = (
         "is {:.1f} (95 %: {:.1f} to {:.1f}) by the page at quick and {:.1f} ({:.1f} to {:.1f}) by the one at standard"
     )
@@ -88,6 +89,16 @@ def test_the_critical_scale_and_what_bumps_do_to_a_bed():
         f"is {min(sums):.1f} to {max(sums):.1f} times as large, and sliding {min(slides):.2f} to {max(slides):.2f}"
         in page
     )
+    standard = rows("particle_size_results_standard.md", "setting", "surface", "packings").set_index("surface")
+    wear, force = (
+        standard.loc["plain", name].astype(float).to_numpy()
+        for name in ("worn volume per metre mm3 per m", "mean normal force N")
+    )
+    alike = math.ceil(100.0 * (wear.max() / wear.min() - 1.0))
+    assert f"it wears within {alike} % alike from scale 3 to 12" in page
+    assert f"under a force that grows by {100.0 * (force[-1] / force[0] - 1.0):.0f} %" in page
+    forms = rows("particle_size_results_standard.md", "form", "crossing")
+    assert (forms["rejected"] == "no").sum() == 1 and "which leaves one form of its curve" in page
 
 
 def test_how_loose_coarse_beds_lie():
@@ -103,6 +114,11 @@ def test_how_loose_coarse_beds_lie():
     asked = GRAVEL["density_kg_per_m3"] * GRAVEL["bulk_solid_fraction"]
     words = f"{ratio[4]:.2f} of the bulk density that is asked ({asked:.0f} kg/m³) at scale 4, {ratio[8]:.2f} at 8"
     assert f"{words} and {ratio[12]:.2f} at 12" in page
+    used = table("tables/particle_size_standard_beds.csv")
+    used["scale"] = used["bed"].str.extract(r"bed_S(\d+)")[0].astype(float)
+    denser = used["bulk_density_over_asked"] * used["level_found_mm"] / used["level_in_use_found_mm"]
+    in_use = denser.groupby(used["scale"]).mean()
+    assert f"has [{in_use[4]:.2f}, {in_use[8]:.2f} and {in_use[12]:.2f}](" in page
     high = 1e-3 * (beds["level_found_mm"] - beds["level_asked_mm"]) / (MEDIAN * beds["particle_scale"])
     assert f"the level is {high.min():.2f} to {high.max():.2f} of a median grain too high" in page
 
@@ -190,13 +206,9 @@ def test_which_rolling_model_is_nearest_and_when_a_layer_flows():
     off_by = found["mean difference"].astype(float)
     heap = ("Shear angle, draw-down (°)", "Angle of repose (°)", "Discharge time (s)")
     rvd, own_spin, epsd2 = ([off_by[response, model] for response in heap] for model in ("rvd", "own spin", "epsd2"))
-    assert "off by {:+.1f} degrees, {:+.1f} degrees and {:+.2f} s under `rvd`, by".format(*rvd) in page
-    assert (
-        "by {:+.1f}, {:+.1f} and {:+.2f} under `own_spin` and by {:+.1f}, {:+.1f} and {:+.2f} under `epsd2`".format(
-            *own_spin, *epsd2
-        )
-        in page
-    )
+    angles = [f"by {each[0]:+.1f} and {each[1]:+.1f}" for each in (rvd, own_spin, epsd2)]
+    assert "off {} degrees under `rvd`, {} under `own_spin` and {} under `epsd2`".format(*angles) in page
+    assert "times, {:+.2f}, {:+.2f} and {:+.2f} s, hang".format(*(each[2] for each in (rvd, own_spin, epsd2))) in page
     assert found.loc[heap[0], "packings"].astype(int).eq(1).all() and ("cdt" not in found.loc[heap[0]].index)
     changes = dict(re.findall(r"(\w+) ([+-]\d+\.\d)", re.search(r"the source changes by [^*]*", told(results))[0]))
     falls = [-float(changes[model]) for model in ("rvd", "own_spin")]
@@ -286,12 +298,17 @@ def test_which_frictions_each_rolling_model_asks_for():
     """Models of relative spin and of own spin ask for other sliding frictions, and reject the pairs of one another."""
     page = told("calibration.md")
     found = rows("calibration_models_results.md", "model", "simulations").set_index("model")
-    names = found.columns[found.columns.str.startswith(("sliding", "angle at recommended"))]
+    names = found.columns[found.columns.str.startswith(("sliding", "angle at "))]
     found = found[names].astype(float).rename(index=lambda name: name.replace(" ", "_"))
     relative, own = ["cdt", "epsd2"], ["own_spin", "rvd"]
     low, high = found.loc[relative, "sliding"].agg(["min", "max"])
-    assert f"ask for sliding friction {low:.2f} to {high:.2f}, `own_spin` and `rvd` for" in page
-    assert {f"{each:.2f}" for each in found.loc[own, "sliding"]} == {"0.24"} and "and `rvd` for 0.24;" in page
+    assert f"of their bands at sliding friction {low:.2f} to {high:.2f}, `own_spin` and `rvd` at" in page
+    assert {f"{each:.2f}" for each in found.loc[own, "sliding"]} == {"0.24"} and "and `rvd` at 0.24, and" in page
+    width = found["sliding high"] - found["sliding low"]
+    assert width["own_spin"] < 0.1 and width.drop("own_spin").min() > 0.4 and "band of `own_spin` is narrow" in page
+    at_source = [f"{each:.1f}" for each in found.loc[[*own, *relative], "angle at calibrated deg"]]
+    words = "{} and {} degrees, and does under `cdt` and `epsd2` ({} and {})".format(*at_source)
+    assert words in told("rolling_friction.md")
     angles = found.loc[[*relative, *own], "angle at recommended deg"]
     assert "the box gives {:.1f}°, {:.1f}°, {:.1f}° and {:.1f}°, measured".format(*angles) in page
     of_pairs = rows("calibration_models_results.md", "pair", "sliding", "rolling").set_index("pair")
@@ -313,10 +330,10 @@ def test_why_the_critical_scale_differs():
     assert "{:.2f} (one packing), {:.2f}, {:.2f} and {:.2f} at 3, 4, 6 and 8".format(*alone) in page
     critical = rows("critical_scale_results.md", "candidate", "scales", "packings", "critical scale")
     where = critical.set_index("candidate")["where"]
-    assert where["one size of particles"].startswith("below 4, if anywhere") and alone["3"] > 1.0
+    assert where["one size of particles"].startswith("below 4, if anywhere") and (alone > 1.0).all()
     assert where["one size, rolling as rvd"].startswith("below 3, if anywhere") and "is below 3, if it has one." in page
     for_study = where["the study with the source's pair"].removesuffix(" to beyond 8")
-    assert f"from {float(for_study):.1f} or beyond to below 4;" in page
+    assert f"none or one below 4, where the study has {float(for_study):.1f} or beyond;" in page
     of_cdt = where["one size, rolling on relative spin"].removesuffix(" to beyond 8")
     assert float(of_cdt) > 6.0 and "beyond 6 again" in page
     alike = rows("particle_size_one_size_results_quick.md", "setting", "particle scale", "layers of particles")

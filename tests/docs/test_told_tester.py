@@ -24,6 +24,10 @@ def test_what_seventeen_revolutions_of_the_tester_show():
     assert "After 184 h it has lost {:.0f} mm³ ({:.0f} to {:.0f}; measured".format(*told_184) in page
     reduction = lost.loc[("56", "reduction"), columns].astype(float)
     assert "{:.0f} % less than the plain one ({:.0f} to {:.0f}; measured".format(*reduction) in page
+    means = table("published/circular_tester_results_quick.csv").set_index("finding")["found"]
+    low, high = re.search(r"interval (\S+) to (\S+)\)", means["convex volume, experiment after 56 h"]).groups()
+    assert f"the interval of the mean, {float(low):.0f} to {float(high):.0f}, lies above it" in page
+    assert told_56.iloc[1] < 82.8 < float(low)
     rates = rows(results, "surface", "shape", "particle scale", "packings", "revolutions", "rate mm3 per revolution")
     columns = ["change percent", "change percent low", "change percent high"]
     plain, convex = (rates.set_index("surface").loc[each, columns].astype(float) for each in ("plain", "convex"))
@@ -38,18 +42,23 @@ def test_what_seventeen_revolutions_of_the_tester_show():
 
 
 def test_what_presses_on_the_tester_and_how_fast_it_passes():
-    """Weights of level bed and heap (N) at the source's bulk density; velocity over the sample and of the whole bed."""
+    """Weights of level bed and heap (N) at the bulk densities of bed and source; velocity over the sample and of the
+    whole bed.
+    """
     page, results = told("circular_tester.md"), "circular_tester_results_quick.md"
-    newtons_per_mm = 1455.0 * 9.81 * 0.1 * 0.1 / 1e3
-    depth = rows(results, "bed", "settings", "packing")["depth found mm"].astype(float).mean()
+    beds = rows(results, "bed", "settings", "packing")
+    found = beds["bulk density found kg per m3"].str.replace("\u202f", "").astype(float).mean()
+    loose, dense = (density * 9.81 * 0.1 * 0.1 / 1e3 for density in (found, 1455.0))  # N per mm
+    depth = beds["depth found mm"].astype(float).mean()
     means = table("tables/circular_tester_quick_steadiness.csv").query("surface == 'plain'").groupby("measure")["mean"]
     height, speed = 1e3 * means.mean()["bed_height_m"], means.mean()["velocity_m_per_s"]
-    assert f"not of the level bed, {newtons_per_mm * depth:.1f} N" in page
-    assert f"stands {height:.0f} mm high" in page and f": {newtons_per_mm * height:.1f} N. At standard" in page
+    assert f"At {found:.0f} kg/m³, which" in page
+    assert f"the level bed weighs {loose * depth:.1f} to {dense * depth:.1f} N" in page
+    assert f"[{height:.0f} mm high](" in page and f", {loose * height:.1f} to {dense * height:.1f}. At standard" in page
     runs = rows(results, "run", "series", "surface").query("series == 'volume' and surface == 'plain'")
     bed = runs["bed over floor velocity"].astype(float).mean()
     share = speed / (0.395 * math.pi / 2.0)  # the trough's mean radius (m), 90 degrees a second
-    assert f"{speed:.2f} m/s, {share:.2f} of the trough's speed, where the whole bed has {bed:.2f}." in page
+    assert f"{speed:.2f} m/s, {share:.2f} of the trough's speed; the whole bed has {bed:.2f}." in page
 
 
 def test_how_much_lower_bumps_of_the_tester_are():
@@ -93,6 +102,12 @@ def test_what_settings_of_the_tester_reach():
         in page
     )
     assert f"(up to {fastest:.0f} mm/s of 500)" in page
+    nearest = values.loc["friction", "Spin of the lowest layer, convex, at first"]
+    assert f"({nearest:.0f} of 168 to 228 degrees a second), by one packing" in page and nearest < 168.0
+    alone = values["Spin of the lowest layer, plain"] / values.loc["reference", "Spin of the lowest layer, plain"]
+    left = f"{alone['friction']:.2f} of the plain layer's spin, `own_spin` {alone['rolling']:.2f} and `rvd`"
+    assert f"{left} {alone['rvd']:.2f}, by one packing each." in page
+    assert f"together leave {alone['friction-rolling-thin']:.3f}, so" in page
     assert "reach sliding over travel, {:.2f} to {:.2f}, and".format(*slides[both]) in page
     assert "plain sample's volume, {:.0f} and {:.0f} mm³ a revolution".format(*volume[both]) in page
     assert "the convex one then loses {:.2f} and {:.2f} of it".format(*ratio[both]) in page
@@ -112,20 +127,24 @@ def test_what_settings_of_the_tester_reach():
 def test_what_moves_the_volume_of_the_tester():
     """Factors of friction, rolling model, height and thickness with their intervals."""
     found = table("tables/tester_sensitivity_quick_effects.csv").set_index(["quantity", "change"])
-    lines = found.loc["Volume per revolution, plain"]
+    lines, bumps = found.loc["Volume per revolution, plain"], found.loc["Volume per revolution, convex, at first"]
     changes = ("friction of the", "rolling model own_spin", "height of the bed", "thickness of the")
     friction, rolling, height, thickness = [
         lines.loc[next(name for name in lines.index if name.startswith(change)), ["factor", "low", "high"]]
         for change in changes
     ]
     page, interval = told("circular_tester.md"), "{:.2f} ({:.2f} to {:.2f})".format
+    other_end, thin = lines.loc["incline of the sample -2 degrees"], bumps.loc["thickness of the sample 2 mm"]
+    assert f"makes {interval(*other_end).replace(' (', ' times (')} on the plain sample" in page
+    assert f"{interval(*thin).replace(' (', ' times (')} on the convex one." in page
+    of_bumps = (bumps.loc[change.name] for change in (friction, rolling))
+    convex = " and ".join("{:.1f} ({:.1f} to {:.1f})".format(*each) for each in of_bumps)
+    assert f"on the plain sample, {convex} on the convex one, by sliding over travel." in page
+    told_apart = lines[(lines["low"] > 1.0) | (lines["high"] < 1.0)].index
+    assert set(told_apart) == {friction.name, rolling.name, "rolling model rvd", other_end.name}
     assert f"{interval(*friction)} and {interval(*rolling).replace(' (', ' times (')} on the plain sample" in page
-    assert (
-        "cannot be said ({:.2f}, {:.2f} to {:.2f}), nor of thickness ({:.2f}, {:.2f} to {:.2f})".format(
-            *height, *thickness
-        )
-        in page
-    )
+    unsaid = "{:.2f}, {:.2f} to {:.2f}".format
+    assert f"cannot be said ({unsaid(*height)}), nor of thickness on the plain one ({unsaid(*thickness)})." in page
 
 
 def test_when_the_testers_pattern_is_worn_out():
@@ -137,5 +156,5 @@ def test_when_the_testers_pattern_is_worn_out():
     revolutions = run["revolutions"] * run["wear coefficient per pa"] / 5e-9  # those of the study's coefficient
     assert f"gone after {gone['worn out revolution']} revolutions" in page
     assert f"From {gone['faster revolution']} on, with {100.0 * float(gone['faster share']):.0f} % of it left" in page
-    assert f"over all {revolutions:.0f} revolutions as much ({gone['lost over plain']})" in page
-    assert f"caps hold back {run['carried share percent']:.0f} % of what the law takes" in page
+    assert f"it has lost {gone['lost over plain']} of what" in page and f"makes of all {revolutions:.0f}; caps" in page
+    assert f"caps hold back {run['carried share percent']:.0f} % of it" in page

@@ -42,7 +42,7 @@ def about(quantity: str, low: float, high: float, unit: str, source: str = "", m
     words = f"about {low:g}" if low == high else f"{low:g} to {high:g}"
     least, most = low - (margin or 0.0), high + (margin or 0.0)
     direction = "above" if low > 0.0 and least >= 0.0 else "below" if high < 0.0 and most <= 0.0 else None
-    return Claim(quantity, words, source, quantity, unit, direction, **size)
+    return Claim(quantity, words, source, quantity, unit, direction, told_side=False, **size)
 
 
 def date_of_rules(part: str = "", path: str | Path | None = None) -> str:

@@ -85,7 +85,7 @@ def _judged_value(row: dict[str, Any]) -> dict[str, Any]:
     between = _open_ended(low, high) if ranged else (value, value)
     margin = _number(row, "margin")
     claim = about(row["quantity"], *between, unit, margin=None if math.isnan(margin) else margin)
-    if _text(row.get(GIVEN)):
+    if _text(row.get(GIVEN)) and math.isfinite(computed):
         verdict = Verdict(f"{computed:.{DIGITS}g} {unit}".strip(), GIVEN)
     else:
         verdict = _verdict(claim, computed, ends, _number(row, "packings"))

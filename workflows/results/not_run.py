@@ -62,7 +62,8 @@ Wall time on {CORES} cores, by the default rates; the command prints them job by
 PIN = """
 The pin has not been run with the source's 14 µs undivided where its displacement rule makes more than 22 contacts at
 once: no setting leaves the step as it is, since from 40 contacts on the pin swings by itself ([why](pin_on_disc.md)).
-Nor is there a row of that rule at 6.8e-11 1/Pa, the coefficient that gives the laboratory's volume here.
+Nor is there a row of that rule at 6.8e-11 1/Pa, with which the conserving rule gives the laboratory's volume; that rule
+gives it with 1.06e-11.
 """
 
 

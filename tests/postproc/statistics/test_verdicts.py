@@ -77,6 +77,15 @@ def test_too_little_evidence_says_nothing():
     assert not_said("no plain twin").verdict == UNSAID
 
 
+def test_what_stays_open_is_told():
+    """Claimed: below 1, 0.6 within 0.1; the size, or the direction, or the direction of what is of another size."""
+    assert judged(SIZE, about(0.7)).reason.startswith("the direction is as claimed, the size is open: ")
+    assert judged(replace(SIZE, told_side=False), about(0.7)).reason == "the interval passes an end of the margin"
+    wide, narrow = judged(SIZE, about(0.9, 0.2)).reason, judged(SIZE, about(1.0)).reason
+    assert wide.endswith("the direction is open") and narrow == f"{wide}, the size is not as claimed"
+    assert judged(SIDE, about(1.0)).reason == wide
+
+
 def test_a_claim_about_several_needs_all_of_them():
     """It agrees where each does, and is contradicted by one that is sure even among so many."""
     good = {f"R{k}": about(0.6) for k in range(5)}

@@ -218,9 +218,21 @@ def at_published(done: Calibrated) -> Block:
                 row = {"quantity": name, "setting": words, "unit": unit, "published_value": pair[response]}
                 ends = {"computed_low": mean[number] - reach[number], "computed_high": mean[number] + reach[number]}
                 row |= {"computed_value": mean[number], **ends, "margin": margin, "source": pair["source"]}
-                row["reason"] = opening_words(done.parameters["draw_down"]) if response == DISCHARGE else ""
+                row["reason"] = _discharge_words(done, mean, number) if response == DISCHARGE else ""
                 rows.append(row)
     return Table(pd.DataFrame(rows), "published_pairs", AT_PUBLISHED, beside_source=True)
+
+
+def _discharge_words(done: Calibrated, mean: np.ndarray, number: int) -> str:
+    """Return why the discharge time of a published pair may be off, and how many times that of the compared pair it is
+    here and there; mean: ours (s) of all published pairs.
+    """
+    told, theirs = opening_words(done.parameters["draw_down"]), done.published[DISCHARGE].to_numpy(float)
+    compared = np.flatnonzero(done.published["row"] == done.compared)
+    if not len(compared) or compared[0] == number:
+        return told
+    ours, published = (each[number] / each[compared[0]] for each in (mean, theirs))
+    return f"{told}; over that of the {done.compared} pair it is {ours:.2f}, published {published:.2f}"
 
 
 def opening_words(draw_down: Mapping[str, Any]) -> str:

@@ -115,18 +115,18 @@ def beside_the_experiment(folder: Path) -> list[Block]:
 
 def measured_beside_ours(compared: pd.DataFrame) -> pd.DataFrame:
     """Return what was measured of the comparison as values beside values, volumes after hours and per weighing; the
-    volume that sets the scale of time is given. Measured reductions stand among the findings, the model's numbers here.
+    plain sample's are given: one sets the scale of time, and the rest follow, as far as it wears linearly, which is a
+    finding of its own. Measured reductions stand among the findings, the model's numbers here.
 
     Intervals are those of means, as of all published numbers; compared: with those of one further packing
     """
     compared = _with_intervals_of_means(compared)
     measured = compared[compared[LABORATORY].notna() & (compared["unit"] == "mm3")]
     first = measured["hours"] == measured["hours"].min()
-    sets_scale = first & (measured["quantity"] == f"{PLAIN} volume")
     said = measured.assign(
         setting=[f"experiment after {each:g} h" for each in measured["hours"]],
         published_value=measured[LABORATORY],
-        **{GIVEN: np.where(sets_scale, "yes", ""), "source": EXPERIMENT},
+        **{GIVEN: np.where(measured["quantity"] == f"{PLAIN} volume", "yes", ""), "source": EXPERIMENT},
     )
     model = of_the_model(compared, pd.read_csv(PUBLISHED))
     table = pd.concat([said, _per_weighing(said[first]), model], ignore_index=True)

@@ -16,7 +16,7 @@ UNLIKE_ITS_EQUATIONS = "said of particle scale 1; the source's own Eq 6.2 and 6.
 
 def of_the_model(compared: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
     """Return rows of the comparison with the volumes and the reduction that the source prints of its model; nothing of
-    samples that are not its. The plain volume that sets the scale of time is given.
+    samples that are not its. Plain volumes are given: a measured one sets the scale of time.
 
     compared: as from `tables.comparison_table`; published: config/published/circular_tester.csv
     """
@@ -33,8 +33,7 @@ def of_the_model(compared: pd.DataFrame, published: pd.DataFrame) -> pd.DataFram
         source=MODEL,
     )
     table = pd.concat([*volumes, reduction], ignore_index=True)
-    sets_scale = (table["quantity"] == f"{PLAIN} volume") & (table["hours"] == first)
-    return table.assign(**{GIVEN: np.where(sets_scale, "yes", "")})
+    return table.assign(**{GIVEN: np.where(table["quantity"] == f"{PLAIN} volume", "yes", "")})
 
 
 def _printed_volumes(published: pd.DataFrame) -> list[dict[str, object]]:

@@ -98,8 +98,9 @@ def numbers_of_pair(patterned: TesterRun, plain: TesterRun, published: pd.DataFr
 
 
 def _of_volumes(patterned: TesterRun, plain: TesterRun, published: pd.DataFrame) -> dict[str, float]:
-    """Volumes (mm3) per revolution at the source's wear coefficient, their ratio, the convex one's at the laboratory's
-    volumes of the plain one, and how far contacts slide over how far the trough goes.
+    """Volumes (mm3) at the source's wear coefficient, of the plain sample per revolution, of the convex one in the
+    first; their ratio, the convex one's at the laboratory's volumes of the plain one, and how far contacts slide over
+    how far the trough goes.
     """
     import pandas as pd
 
@@ -115,7 +116,7 @@ def _of_volumes(patterned: TesterRun, plain: TesterRun, published: pd.DataFrame)
     summary = run_summary(pd.read_csv(plain.folder / "wear.csv"))
     return {
         "plain_volume": of_bare / last / times,
-        "convex_volume": of_convex / last / times,
+        "convex_volume": float(volumes_at(convex, 1.0).iloc[0]) / times,
         "loss_ratio": of_convex / of_bare,
         **{
             f"convex_volume_{hours}_h": float(volumes_at(convex, revolution_of(bare, volume)).iloc[0])

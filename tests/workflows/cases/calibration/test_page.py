@@ -17,6 +17,7 @@ from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
 from bulkwear.workflows.cases.calibration.boxes import test_of as bulk_test_of
 from bulkwear.workflows.cases.calibration.findings import (
     DISCHARGE,
+    at_published,
     beside_measured,
     cards,
     measured_beside,
@@ -188,6 +189,19 @@ def test_discharge_times_are_told_with_the_opening_that_is_assumed():
     """Beside those that others simulated: form and size, as the study has them."""
     assert DISCHARGE in RESPONSES["draw_down"]
     assert "with the slot of 45 mm that is assumed" in opening_words(study().runs[0].parameters["draw_down"])
+
+
+def test_discharge_times_are_told_over_that_of_the_compared_pair(done):
+    """No size of the opening makes that ratio: ours at each pair that others simulated, beside theirs."""
+    if DISCHARGE not in done.known.surrogates:  # of a fidelity that has no draw-down test
+        times = done.known.surrogates | {DISCHARGE: next(iter(done.known.surrogates.values()))}
+        done = replace(done, known=replace(done.known, surrogates=times))
+    table = at_published(done).data.query("quantity == 'Discharge time'")
+    reasons = table.set_index("published_value")["reason"]
+    ours = table.set_index("published_value")["computed_value"]
+    assert "over that" not in reasons[5.6]  # the compared pair itself, Table 3.6
+    ratio = ours[12.3] / ours[5.6]
+    assert reasons[12.3].endswith(f"over that of the calibrated pair it is {ratio:.2f}, published {12.3 / 5.6:.2f}")
 
 
 def test_sections_show_every_figure_once(folder):

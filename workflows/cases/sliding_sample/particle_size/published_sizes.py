@@ -169,13 +169,7 @@ def critical_sentences(critical: Crossing, published: float, ratios: pd.DataFram
     published: scale; ratios: as from `wear_by_scale.ratio_by_scale`; curve: name of the patterned sample
     """
     theirs = "" if curve == CONVEX else f", for a {CONVEX} sample,"
-    less, more = (
-        _listed(ratios.loc[chosen, "particle_scale"])
-        for chosen in (ratios["interval_high"] < 1.0, ratios["interval_low"] > 1.0)
-    )
-    said = [
-        f"By the intervals of its packings the {curve} sample wears less than the plain one at {less}, more at {more}."
-    ]
+    said = [_side_words(ratios, curve)]
     said.append(f"{critical_scale_text(critical).capitalize()}; the source's{theirs} is about {published:g}.")
     if np.isfinite(critical.below) and np.isfinite(critical.above):
         said.append(
@@ -191,5 +185,18 @@ def critical_sentences(critical: Crossing, published: float, ratios: pd.DataFram
     return said
 
 
+def _side_words(ratios: pd.DataFrame, curve: str) -> str:
+    """Return at which scales the intervals tell which sample wears more."""
+    if ratios["interval_low"].isna().all():
+        return f"No scale has an interval: which of {curve} and plain sample wears more is told of none."
+    less, more = (
+        _listed(ratios.loc[chosen, "particle_scale"])
+        for chosen in (ratios["interval_high"] < 1.0, ratios["interval_low"] > 1.0)
+    )
+    return (
+        f"By the intervals of its packings the {curve} sample wears less than the plain one at {less}, more at {more}."
+    )
+
+
 def _listed(scales: pd.Series) -> str:
-    return f"scale {', '.join(f'{scale:g}' for scale in scales)}" if len(scales) else "none"
+    return f"scale {', '.join(f'{scale:g}' for scale in scales)}" if len(scales) else "no scale"

@@ -96,7 +96,8 @@ def critical_scale_text(found: Crossing) -> str:
         return f"critical scale{value}: {found.reason}"
     ends = [f"{end:.3g}" if np.isfinite(end) else "beyond the scales simulated" for end in (found.low, found.high)]
     value = f"{found.value:.3g}" if np.isfinite(found.value) else "not between the scales simulated"
-    return f"critical scale {value}, 95 % interval over {found.forms:g} forms {' to '.join(ends)}"
+    forms = "1 form" if found.forms == 1 else f"{found.forms:g} forms"
+    return f"critical scale {value}, 95 % interval over {forms} {' to '.join(ends)}"
 
 
 def bed_sentences(plain: pd.DataFrame) -> list[str]:

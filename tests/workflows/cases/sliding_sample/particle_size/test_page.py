@@ -103,7 +103,7 @@ def test_the_sections_tell_what_the_tables_do(folder, page):
     """Every section: rows with their layers, ours beside the source, guidance."""
     text = "\n".join(written(block, "x") for section in sections(page, folder) for block in section.blocks)
     said = " ".join(text.split())
-    assert "wears less than the plain one at none, more at scale 4, 6, 8" in said
+    assert "wears less than the plain one at no scale, more at scale 4, 6, 8" in said
     assert "a level one of 46 mm" in said and "over that at scale 4, is 95 % at scale 6, 80 % at scale 8;" in said
     assert "fewer than 2 layers" not in said
     for row, layers in LAYERS.items():
