@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import importlib
-import importlib.util
 import os
 import time
 from collections.abc import Sequence
@@ -33,11 +32,6 @@ MODULES = (
 )
 BY_STUDY = "study_share"  # whose lines of a study begin with its name and fidelity, up to a comma
 BUSY = 0.5  # -, load of the machine, in processes, above which wall times mean little
-
-
-def there(module: str) -> bool:
-    """Return whether this version of the project has that benchmark."""
-    return importlib.util.find_spec(f"benchmarks.{module}") is not None
 
 
 def lines_of(module: str, folder: Path, quick: bool) -> pd.DataFrame:
@@ -86,7 +80,7 @@ def main() -> None:
     if (load := os.getloadavg()[0]) > BUSY:
         print(f"This machine is busy (load {load:.1f}): wall times, and all of `ranks`, will mean little.")
     found = []
-    for module in filter(there, given.only or MODULES):
+    for module in given.only or MODULES:
         found.append(lines_of(module, folder, given.quick))
         print(table_text(found[-1]), flush=True)
         if not given.quick:

@@ -24,7 +24,7 @@ from benchmarks.calibration_models_page import MODEL, SEARCHED, results_page
 from benchmarks.plots.rolling_models import families
 from benchmarks.rolling_models import SETTINGS
 from benchmarks.rolling_page import MODELS, NO_REST
-from benchmarks.runs import BY, at_least_one, attempted, simulated_by
+from benchmarks.runs import BY, DIGITS, at_least_one, attempted, simulated_by
 from bulkwear.postproc.plots.style import save, save_small
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
 from bulkwear.workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
@@ -32,12 +32,12 @@ from bulkwear.workflows.cases.calibration.driver import run_calibration
 from bulkwear.workflows.cases.calibration.outcome import Calibrated, read_calibrated
 from bulkwear.workflows.cases.calibration.simulations import FOLDERS
 from bulkwear.workflows.config.design import Study, load_study
+from bulkwear.workflows.engine.state import digest
 
 FIDELITY = "quick"  # the shear box alone, in which every model comes to rest
 FILE, PAGE, FIGURE = "calibration_models.csv", "calibration_models_results.md", "calibration_models.png"
 TABLES = {"simulations.csv": True, "repeats.csv": False}  # of a calibration: whether its rows were searched
 EXACT = "%.10g"  # of the table, so that a page that is drawn again recommends the same pairs
-FAILED = "failed.txt"  # in a model's folder: why it has no calibration
 
 
 def study_of(model: str) -> Study:
@@ -60,12 +60,18 @@ def calibrate(model: str, folder: Path, cores: int) -> pd.DataFrame:
         simulations, _, repeats = run_calibration(calibration_box(study), *files, place, cores)
         found.extend((simulations.assign(pair=SEARCHED), repeats))
 
-    attempted(task, place / FAILED)
+    failed = failure_file(place, study)
+    attempted(task, failed)
     if not found:
-        return pd.DataFrame({MODEL: [model], NO_REST: (place / FAILED).read_text(encoding="utf-8").strip()})
+        return pd.DataFrame({MODEL: [model], NO_REST: failed.read_text(encoding="utf-8").strip()})
     table = pd.concat(found, ignore_index=True)
     by = [simulated_by(place / SIMULATIONS / names.split()[-1]) for names in table[FOLDERS]]
     return table.drop(columns=FOLDERS).assign(**{MODEL: model, BY: by})
+
+
+def failure_file(place: Path, study: Study) -> Path:
+    """Return the file in a model's folder that says why it has no calibration; other settings have another one."""
+    return place / f"failed_{digest(calibration_box(study))[:DIGITS]}.txt"
 
 
 def calibrated(table: pd.DataFrame) -> dict[str, Calibrated]:
@@ -123,12 +129,16 @@ def parser_of() -> argparse.ArgumentParser:
 
 def main(given: Sequence[str] | None = None) -> None:
     """Simulate what is missing, then write table, figure and page."""
-    asked = parser_of().parse_args(given)
+    parser = parser_of()
+    asked = parser.parse_args(given)
     file = asked.output / FILE
     for model in () if asked.redraw else asked.models:
         table = kept(file, calibrate(model, asked.folder, asked.cores))
         table.sort_values(MODEL, kind="stable").to_csv(file, index=False, float_format=EXACT)
-    print(publish(asked.output, pd.read_csv(file)), flush=True)
+    table = pd.read_csv(file)
+    if "test" not in table:
+        parser.error(f"{file}: no model has a calibration; {table[NO_REST].iloc[0]}")
+    print(publish(asked.output, table), flush=True)
 
 
 if __name__ == "__main__":

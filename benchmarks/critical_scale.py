@@ -27,7 +27,17 @@ import pandas as pd
 
 from benchmarks.plots.critical_scale import ratio_by_candidate, ratio_by_scale
 from benchmarks.ratios import ASSUMED, ratio_intervals
-from benchmarks.runs import BY, at_least_one, attempted, simulated_by, simulated_run, with_bed, with_earlier
+from benchmarks.runs import (
+    BY,
+    at_least_one,
+    attempted,
+    failure_file,
+    is_simulated,
+    simulated_by,
+    simulated_run,
+    with_bed,
+    with_earlier,
+)
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of, particle_steps
 from benchmarks.scale_page import CURVES, FIGURE, results_page, source_ratio
 from benchmarks.window_case import PARTICLE_STEPS_PER_SECOND
@@ -47,7 +57,6 @@ from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.solver import die_with
 from bulkwear.workflows.engine.state import StateError
 
-FAILED = "failed.txt"  # in the folder of a run whose simulation failed, with the reason
 SCALES, PACKINGS, OF_REFERENCE = (6,), 1, 3
 LEVEL = 0.95  # of intervals
 MM3 = 1e9  # mm3 in a m3
@@ -72,9 +81,8 @@ def simulated(case: Case, folder: Path, settings: dict[str, Any]) -> None:
 
 def kept(chain: Chain, task: Callable[[], object]) -> None:
     """Do the task, or say and keep why it failed: one candidate that cannot be simulated stops no other."""
-    failed = chain.folder.parent / FAILED
-    if failed.exists():
-        return
+    chain.folder.mkdir(exist_ok=True)
+    failed = failure_file(chain)
     attempted(task, failed, (StateError, ValueError))
     if failed.exists():
         print(f"{chain.name} failed: {failed.read_text(encoding='utf-8')}", flush=True)
@@ -133,7 +141,7 @@ def run_row(case: Case, chain: Chain) -> dict[str, Any]:
 def finished(wanted: Sequence[Case], folder: Path) -> pd.DataFrame:
     """Return the rows of those runs that are finished; nothing is simulated."""
     chains = [(case, chain_of(case, folder, SETTINGS)) for case in wanted]
-    return pd.DataFrame([run_row(case, chain) for case, chain in chains if (chain.folder / "wear.csv").exists()])
+    return pd.DataFrame([run_row(case, chain) for case, chain in chains if is_simulated(chain)])
 
 
 def comparison(runs: pd.DataFrame) -> pd.DataFrame:
@@ -287,6 +295,8 @@ def main() -> None:
             write = partial(write_table, file, wanted, given.folder)
             simulate_all(wanted, given.folder, given.cores, write)
         write_table(file, wanted, given.folder)
+        if not file.is_file():
+            parser.error(f"{given.folder}: no run is finished; without --finished they are simulated.")
     print(publish(given.output, pd.read_csv(file)), flush=True)
 
 
@@ -299,8 +309,10 @@ def without_reference(wanted: Sequence[Case], file: Path) -> list[float]:
 
 
 def write_table(file: Path, wanted: Sequence[Case], folder: Path) -> None:
-    """Write the rows of the runs that are finished, beside those of earlier runs that are not among them."""
-    ordered(with_earlier(file, finished(wanted, folder), KEYS)).to_csv(file, index=False, float_format="%.6g")
+    """Write the rows of the runs that are finished, beside those of earlier runs that are not among them, if any."""
+    found = finished(wanted, folder)
+    if len(found):
+        ordered(with_earlier(file, found, KEYS)).to_csv(file, index=False, float_format="%.6g")
 
 
 def ordered(table: pd.DataFrame) -> pd.DataFrame:

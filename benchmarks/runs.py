@@ -140,7 +140,7 @@ def with_earlier(file: Path, found: pd.DataFrame, keys: Sequence[str]) -> pd.Dat
 def with_bed(chain: Chain, bed_name: str) -> Chain:
     """Return the chain, its bed filled unless it is there."""
     if not chain.bed_restart.with_name("cost.csv").exists():
-        fill_bed(chain.case, bed_name, chain.bed, chain.bed_restart.parent)
+        fill_bed(chain.case, bed_name, chain.bed, chain.bed_restart.parent, ranks=chain.ranks)
     return chain
 
 
@@ -158,13 +158,13 @@ def simulated_run(chain: Chain, bed_name: str) -> Chain:
 
 
 def is_simulated(chain: Chain) -> bool:
-    """Return whether a run is finished, and from the settings and by the code that the chain has."""
+    """Return whether a run is finished, from the settings and by the version of the wear code that the chain has."""
     needed = (chain.folder / "wear.csv", chain.surface, chain.bed_restart)
     return all(file.exists() for file in needed) and state.finished_cycles(chain.folder, inputs_digest(chain)) > 0
 
 
 def failure_file(chain: Chain) -> Path:
-    """Return the file that says why a run failed; what has other settings, or other code, has another one."""
+    """Return the file that says why a run failed; other settings, or another version of the wear code, have another."""
     return chain.folder / f"failed_{run_digest(chain.case, chain.parameters, chain.bed)[:DIGITS]}.txt"
 
 
@@ -176,9 +176,18 @@ def shared_chain(name: str, folder: Path, case: Case, run: Run, bed: Mapping[str
     """
     place = folder / name
     place.mkdir(parents=True, exist_ok=True)
-    restart = place.parent / f"bed_{state.digest(bed)[:DIGITS]}" / "bed.restart"
-    surface = folder / f"{run.surface}_{state.digest(surface_from(case, run.parameters))[:DIGITS]}.vtu"
+    surface, restart = surface_file(folder, run.surface, case, run.parameters), bed_file(place.parent, bed)
     return Chain(name, place, case, run.parameters, surface, bed, restart)
+
+
+def surface_file(folder: Path, name: str, case: Case, parameters: Mapping[str, Any]) -> Path:
+    """Return where in a folder a surface lies; made from anything else it has another name."""
+    return folder / f"{name}_{state.digest(surface_from(case, parameters))[:DIGITS]}.vtu"
+
+
+def bed_file(folder: Path, bed: Mapping[str, Any]) -> Path:
+    """Return where in a folder the restart of a bed lies; a bed of other parameters has another place."""
+    return folder / f"bed_{state.digest(bed)[:DIGITS]}" / "bed.restart"
 
 
 def prepared_chain(folder: Path, particle_scale: float, wider: int = 1) -> Chain:
@@ -190,14 +199,13 @@ def prepared_chain(folder: Path, particle_scale: float, wider: int = 1) -> Chain
     parameters, bed_name = study.run(RUN).parameters, study.bed_of(RUN)
     place, bed_folder = own_folders(folder, study, RUN)
     surface = place / RUN / "surface.vtu"
-    if not (bed_folder / "bed.restart").exists():
-        fill_bed(study.case, bed_name, study.beds[bed_name], bed_folder, ranks=wider)
-    if not surface.exists():
-        surface.parent.mkdir(parents=True, exist_ok=True)
-        write_surface(surface, sample_surface(parameters["sample"], parameters["pattern"]))
     chain = Chain(
         RUN, surface.parent, study.case, parameters, surface, study.beds[bed_name], bed_folder / "bed.restart", wider
     )
+    with_bed(chain, bed_name)
+    if not surface.exists():
+        surface.parent.mkdir(parents=True, exist_ok=True)
+        write_surface(surface, sample_surface(parameters["sample"], parameters["pattern"]))
     if not (state.cycle_folder(chain.folder, 0) / RESTART).exists():
         run_cycle(chain, None, inputs_digest(chain), Progress(RUN, run_in_steps(chain)))
     return chain

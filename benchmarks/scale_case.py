@@ -10,7 +10,7 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
-from benchmarks.runs import FIRST_SEED, PUBLISHED_PAIR, changed
+from benchmarks.runs import FIRST_SEED, PUBLISHED_PAIR, changed, surface_file
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
@@ -196,7 +196,7 @@ def chain_of(case: Case, folder: Path, settings: Mapping[str, Any]) -> Chain:
         place / "run",
         study.case,
         run.parameters,
-        place / "surface.vtu",
+        surface_file(place, "surface", study.case, run.parameters),
         bed,
         folder / "beds" / state.digest(bed)[:12] / "bed.restart",
     )

@@ -258,8 +258,11 @@ def cells(row: NamedTuple) -> str:
 
 
 def within(found: pd.DataFrame) -> float:
-    """Return the value furthest from the first that is within the limit with all between them."""
-    return float(found.loc[(found["verdict"] == WITHIN).cummin(), "value"].iloc[-1])
+    """Return the value furthest from the first that is within the limit with all between them; NaN where the first
+    failed.
+    """
+    reached = found.loc[(found["verdict"] == WITHIN).cummin(), "value"]
+    return float(reached.iloc[-1]) if len(reached) else math.nan
 
 
 def beyond(found: pd.DataFrame) -> str:

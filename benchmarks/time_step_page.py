@@ -37,14 +37,14 @@ def answers(table: pd.DataFrame) -> Answers:
 
 def longest(found: pd.DataFrame) -> float:
     """Return the longest time step (-) whose change is shown to be within the limit, where of no shorter one the
-    opposite is shown and none failed; NaN where too few packings ran.
+    opposite is shown and none failed; NaN where too few packings ran or one of the shortest failed.
 
     found: of `answers`
     """
     if len(found) < 2 or (found["runs"] + found["failed"]).min() < ENOUGH:
         return math.nan
     allowed = ~found["verdict"].isin([BEYOND, FAILED]).cummax()
-    return float(found.loc[allowed & (found["verdict"] == WITHIN), "value"].iloc[-1])
+    return float(found.loc[allowed & (found["verdict"] == WITHIN), "value"].max())
 
 
 def limits(found: Answers) -> pd.DataFrame:
@@ -76,7 +76,9 @@ def said_of(model: str, found: Answers, row: pd.Series) -> str:
     own, limit = [told for key, told in found.items() if key[0] == model], row["all of them"]
     shortest = min(told["value"].min() for told in own)
     if math.isnan(limit):
-        return f"`{model}`: not known, fewer than {ENOUGH} packings of every time step have run"
+        return (
+            f"`{model}`: not known, fewer than {ENOUGH} packings of every time step have run, or a shortest one failed"
+        )
     if limit > shortest:
         return (
             f"`{model}`: at {limit:g} of the Rayleigh time all is within {PERCENT * LIMIT:g} % with 95 % confidence,"

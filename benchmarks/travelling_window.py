@@ -27,7 +27,7 @@ import pandas as pd
 
 from benchmarks.plots.figures import wear_side_by_side
 from benchmarks.ratios import ratio_intervals
-from benchmarks.runs import at_least_one
+from benchmarks.runs import BY, at_least_one, is_simulated, simulated_by, with_earlier
 from benchmarks.window_case import (
     BEDS,
     BUMPS,
@@ -117,6 +117,7 @@ def run_row(case: Case, chain: Chain) -> dict[str, Any]:
         "particle_steps": float(sum(record["particles"] * record["steps"] for record in records)),
         "processor_s": sum(record["processor_s"] for record in records),
         "bed_processor_s": bed["processor_s"],
+        BY: simulated_by(chain.folder),
     }
 
 
@@ -326,7 +327,7 @@ def finished(surfaces: Sequence[str], packings: int, folder: Path) -> list[tuple
     """Return the runs of a folder that are finished; nothing is simulated."""
     cases = [case for number in range(packings) for case in packing(surfaces, number)]
     chains = [(case, chain_of(case, folder, SETTINGS)) for case in cases]
-    return [(case, chain) for case, chain in chains if (chain.folder / "wear.csv").exists()]
+    return [(case, chain) for case, chain in chains if is_simulated(chain)]
 
 
 def tables_of(done: Sequence[tuple[Case, Chain]]) -> tuple[pd.DataFrame, pd.DataFrame]:
@@ -348,10 +349,11 @@ def main() -> None:
     parser.add_argument("--redraw", action="store_true", help="from the tables of an earlier run")
     given = parser.parse_args()
     files = [given.output / f"travelling_window{part}.csv" for part in ("", "_blocks")]
+    keys = ["surface", "bed", "seed"]
 
     def write(runs: pd.DataFrame, blocks: pd.DataFrame) -> None:
-        for file, table in zip(files, (runs, blocks), strict=True):
-            table.to_csv(file, index=False, float_format="%.6g")
+        for file, table, key in zip(files, (runs, blocks), (keys, [*keys, "block"]), strict=True):
+            with_earlier(file, table, key).to_csv(file, index=False, float_format="%.6g")
         print(publish(given.output, *map(pd.read_csv, files)), flush=True)
 
     if given.redraw:
@@ -359,7 +361,9 @@ def main() -> None:
         return
     surfaces = (given.surface,) if given.surface else SURFACES
     if given.finished:
-        write(*tables_of(finished(surfaces, given.packings, given.folder)))
+        if not (done := finished(surfaces, given.packings, given.folder)):
+            parser.error(f"{given.folder}: no run is finished; without --finished they are simulated.")
+        write(*tables_of(done))
         return
     print(said_beforehand(surfaces, given.packings, SETTINGS), flush=True)
     simulate_all(surfaces, given.packings, given.folder, given.cores, write)

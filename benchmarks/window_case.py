@@ -10,7 +10,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.runs import FIRST_SEED, SMALL_BUMPS, STRAIGHT_RAMP, changed, simulated_run
+from benchmarks.runs import (
+    FIRST_SEED,
+    SMALL_BUMPS,
+    STRAIGHT_RAMP,
+    bed_file,
+    changed,
+    simulated_run,
+    surface_file,
+)
 from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine.chain import Chain, total_steps
@@ -101,15 +109,15 @@ def chain_of(case: Case, folder: Path, settings: Mapping[str, Any]) -> Chain:
     place = folder / case.folder
     place.mkdir(parents=True, exist_ok=True)
     (run,) = (run for run in runs if (run.row, run.surface) == (ROW, case.surface))
-    restart = place / "bed" / "bed.restart"
+    bed = beds[bed_of[run.name]]
     return Chain(
         f"{run.name}, {case.bed}, {case.seed}",
         place / "run",
         study.case,
         run.parameters,
-        place / "surface.vtu",
-        beds[bed_of[run.name]],
-        restart,
+        surface_file(place, "surface", study.case, run.parameters),
+        bed,
+        bed_file(place, bed),
     )
 
 

@@ -7,7 +7,7 @@ imported when they are first used, so that `import bulkwear` costs nothing.
 from importlib import import_module
 from pathlib import Path
 
-from bulkwear.compiled import choose_cache
+from bulkwear.compiled import choose_cache, forget_older
 
 PUBLIC = {  # name: module that has it
     "SurfaceMesh": "bulkwear.postproc.mesh",  # points (m), triangles, labels and fields of a surface
@@ -27,7 +27,9 @@ __all__ = list(PUBLIC)
 _HERE = Path(__file__).resolve().parent
 if not (_HERE / "postproc").is_dir():  # a clone: the package's folders stand beside this one, installed they are in it
     __path__.append(str(_HERE.parent))
-choose_cache(next(Path(folder) / "postproc" for folder in __path__ if (Path(folder) / "postproc").is_dir()))
+_POSTPROC = next(Path(folder) / "postproc" for folder in __path__ if (Path(folder) / "postproc").is_dir())
+choose_cache(_POSTPROC)
+forget_older(_POSTPROC)
 
 
 def __getattr__(name: str):

@@ -1,4 +1,4 @@
-"""Where numba keeps what it has compiled: a folder that always works.
+"""Where numba keeps what it has compiled, a folder that always works, and that it is not older than the source.
 
 It writes beside the modules, or into the user's cache. Where neither can be written, as in a read-only installation of
 a user without a home, it does not compile at all; it then gets a folder of this user's in the temporary folder.
@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import os
 import stat
+from contextlib import suppress
 from pathlib import Path
 
 VARIABLE = "NUMBA_CACHE_DIR"
+SHARED = "triangle.py"  # of postproc, arithmetic that these modules hold compiled copies of
+CALLERS = ("mesh_cuts.py", "wear/face_kernels.py", "wear/remesh_kernels.py")
 
 
 def choose_cache(package: Path) -> None:
@@ -21,6 +24,18 @@ def choose_cache(package: Path) -> None:
     if VARIABLE in os.environ or _writable(package) or _writable(_user_cache()):
         return
     os.environ[VARIABLE] = str(_own_folder())
+
+
+def forget_older(package: Path) -> None:
+    """Remove numba's indices of modules whose compiled code is older than the shared arithmetic that it holds a copy
+    of: numba itself looks at the time of the module alone. For what it keeps beside modules.
+    """
+    newest = (package / SHARED).stat().st_mtime
+    for caller in (package / name for name in CALLERS):
+        for index in (caller.parent / "__pycache__").glob(f"{caller.stem}.*.nbi"):
+            with suppress(OSError):  # another process was first, or nothing can be written there
+                if index.stat().st_mtime < newest:
+                    index.unlink()
 
 
 def _user_cache() -> Path:

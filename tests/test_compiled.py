@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from bulkwear.compiled import VARIABLE, choose_cache
+from bulkwear.compiled import CALLERS, SHARED, VARIABLE, choose_cache, forget_older
 from tests import REPOSITORY
 
 NOBODY = 65534
@@ -35,6 +35,25 @@ def test_without_any_there_is_one_of_this_user_alone(tmp_path, monkeypatch):
     folder.chmod(0o777)  # as somebody else may have made it
     choose_cache(Path("/proc"))
     assert Path(os.environ.pop(VARIABLE)) != folder
+
+
+def test_compiled_code_older_than_the_arithmetic_it_copied_is_forgotten(tmp_path):
+    """An index that is older goes, a newer one and that of another module stay; every caller is known."""
+    (tmp_path / SHARED).write_text("")
+    os.utime(tmp_path / SHARED, (1000.0, 1000.0))
+    made = {"mesh_cuts.cut-12.py311.nbi": 999.0, "mesh_cuts.side-30.py311.nbi": 1001.0, "other.cut-1.py311.nbi": 999.0}
+    (tmp_path / "__pycache__").mkdir()
+    for name, when in made.items():
+        (tmp_path / "__pycache__" / name).write_bytes(b"")
+        os.utime(tmp_path / "__pycache__" / name, (when, when))
+    forget_older(tmp_path)
+    assert sorted(path.name for path in (tmp_path / "__pycache__").iterdir()) == sorted(made)[1:]
+    package = REPOSITORY / "postproc"
+    asks = f"from bulkwear.postproc.{Path(SHARED).stem} import"
+    callers = {
+        path.relative_to(package).as_posix() for path in package.rglob("*.py") if asks in path.read_text("utf-8")
+    }
+    assert callers == set(CALLERS)
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can become another user")

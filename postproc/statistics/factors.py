@@ -70,11 +70,6 @@ def factor_of(name: str, values: np.ndarray) -> Factor:
     return Factor(name, low, high, "log" if doubled else "linear")
 
 
-def factors_of(design: pd.DataFrame, columns: Sequence[str]) -> list[Factor]:
-    """Return the factors that columns of a design table span. Raises ValueError as `factor_of`."""
-    return [factor_of(column, design[column].to_numpy()) for column in columns]
-
-
 def half_normal_table(
     terms: Sequence[Term], coded: np.ndarray, response: np.ndarray, names: Sequence[str]
 ) -> pd.DataFrame:

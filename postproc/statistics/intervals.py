@@ -236,34 +236,6 @@ def interval_table(found: Mapping[Hashable, Estimate], confidence: float = CONFI
     return pd.DataFrame(rows, columns=["setting", "mean", *COLUMNS])
 
 
-@dataclass(frozen=True)
-class Scatter:
-    """What the scatter of block values is made of.
-
-    between: standard deviation of what packings differ by, beyond what their blocks let expect; 0 where nothing is left
-    within: standard deviation of a packing's mean from the scatter of its blocks, their correlation with it
-    Both in the unit of the values, of the logarithm where the estimate is; NaN where not known.
-    """
-
-    between: float
-    within: float
-
-
-def scatter(values: np.ndarray, packings: np.ndarray, log: bool = False) -> Scatter:
-    """Return the parts of the scatter; values, packings as for `estimate`, blocks in the order of the travel.
-
-    It tells whether a longer travel (within) or more packings (between) shorten an interval; intervals need it not.
-    """
-    values, labels = np.asarray(values, dtype=float), np.asarray(packings)
-    means = packing_means(values, labels, log)
-    series = [values[(labels == name) & np.isfinite(values)] for name in dict.fromkeys(labels.tolist())]
-    errors = [error_of_mean(one) / (abs(one.mean()) if log else 1.0) for one in series if len(one) > 2]
-    within = math.sqrt(float(np.mean(np.square(errors)))) if errors else math.nan
-    if len(means) < 2 or not errors:
-        return Scatter(math.nan, within)
-    return Scatter(math.sqrt(max(float(means.var(ddof=1)) - within**2, 0.0)), within)
-
-
 def error_of_mean(series: np.ndarray) -> float:
     """Return the standard error of the mean of a series (k,) whose values follow one another.
 

@@ -20,11 +20,12 @@ from benchmarks.critical_scale import (
     without_reference,
 )
 from benchmarks.plots.critical_scale import ratio_by_scale
-from benchmarks.runs import BY, FIRST_SEED, with_earlier
+from benchmarks.runs import BY, FIRST_SEED, failure_file, with_earlier
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of
 from benchmarks.scale_page import conclusion, needed_factor, source_ratio, touched_by_scale
 from bulkwear.postproc.statistics.crossing import Crossing
 from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.config.layers import merge
 from tests.support.loaded_once import loaded_once
 
 OTHER = "neighbouring rows 40 mm apart"
@@ -214,7 +215,7 @@ def test_large_particles_touch_more_triangles(monkeypatch):
 def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
     """Tiny runs, both surfaces; what is finished is not simulated again, and a failure stops nothing else."""
     monkeypatch.setattr(critical_scale, "SETTINGS", TINY)
-    wanted = [Case(REFERENCE, surface, 8, FIRST_SEED) for surface in scale_case.SURFACES]
+    wanted = [Case(REFERENCE, surface, 6, FIRST_SEED) for surface in scale_case.SURFACES]
     assert "2 runs" in critical_scale.said_beforehand(wanted, tmp_path)
     simulate_all(wanted, tmp_path, 1, lambda: None)
     found = finished([*wanted, replace(wanted[0], seed=1)], tmp_path)
@@ -225,8 +226,42 @@ def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
     simulate_all(wanted, tmp_path, 1, lambda: None)
     broken = chain_of(replace(wanted[0], seed=1), tmp_path, TINY)
     critical_scale.kept(broken, lambda: (_ for _ in ()).throw(ValueError("no bed")))
-    assert (broken.folder.parent / critical_scale.FAILED).read_text() == "no bed"
+    assert failure_file(broken).read_text() == "no bed"
     critical_scale.kept(broken, lambda: pytest.fail("failed before"))
+
+
+def test_a_failure_is_told_again_and_of_its_settings_alone(tmp_path, monkeypatch, capsys):
+    """Asked for once more it is not tried but told; a candidate with other settings is."""
+    case, tried = Case(REFERENCE, "convex", 6, FIRST_SEED), []
+    chain = chain_of(case, tmp_path, TINY)
+    critical_scale.kept(chain, lambda: (_ for _ in ()).throw(ValueError("no bed")))
+    critical_scale.kept(chain, lambda: tried.append("same"))
+    assert capsys.readouterr().out.count("failed: no bed") == 2
+    other = chain_of(case, tmp_path, merge(TINY, {"solver": {"rayleigh_fraction": 0.3}}))
+    critical_scale.kept(other, lambda: tried.append("other"))
+    assert tried == ["other"]
+
+
+def test_a_sample_of_other_elements_is_another_file(tmp_path):
+    """A finished run counts by the bytes of its surface, so that one is never taken for another."""
+    of = {
+        size: chain_of(
+            Case(REFERENCE, "convex", 6, FIRST_SEED), tmp_path, merge(TINY, {"sample": {"element_size_mm": size}})
+        )
+        for size in (3, 4)
+    }
+    assert of[3].folder == of[4].folder and of[3].surface != of[4].surface
+
+
+def test_nothing_finished_is_told_before_the_table_is_touched(tmp_path, monkeypatch, capsys):
+    """Neither a table nor a page without a run; a table of earlier runs stays."""
+    file = tmp_path / "critical_scale.csv"
+    critical_scale.write_table(file, [Case(REFERENCE, "convex", 6, FIRST_SEED)], tmp_path)
+    assert not file.exists()
+    monkeypatch.setattr("sys.argv", ["x", "--finished", "--folder", str(tmp_path), "--output", str(tmp_path)])
+    with pytest.raises(SystemExit, match="2"):
+        critical_scale.main()
+    assert "no run is finished; without --finished they are simulated" in capsys.readouterr().err
 
 
 def test_rows_of_earlier_runs_stay(tmp_path):

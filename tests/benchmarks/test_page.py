@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 import pandas as pd
 
-from benchmarks.__main__ import BY_STUDY, MODULES, lines_of, replaced, there, write_page
+from benchmarks.__main__ import BY_STUDY, MODULES, lines_of, replaced, write_page
 from benchmarks.measure import measured
 from benchmarks.page import page, table_text
 from benchmarks.ranks import ACROSS
@@ -26,7 +26,7 @@ def ranks(efficiency: float) -> pd.DataFrame:
 
 def test_every_benchmark_has_one_way_to_be_asked():
     """All take a folder and whether it is a trial, and say in their first lines what they measure."""
-    for name in filter(there, MODULES):
+    for name in MODULES:
         module = importlib.import_module(f"benchmarks.{name}")
         assert list(inspect.signature(module.measures).parameters) == ["folder", "quick"], name
         assert inspect.getdoc(module).endswith("."), name

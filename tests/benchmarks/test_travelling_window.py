@@ -93,6 +93,31 @@ def test_runs_that_another_search_repeats_count_once():
     assert other["freedom"].eq(3).all() and np.isfinite(other.loc[OWN_SEARCH, "ratio_low"])
 
 
+def test_nothing_finished_leaves_the_tables(tmp_path, monkeypatch, capsys):
+    """One sentence, and what an earlier run told stays; of other surfaces its rows stay beside new ones."""
+    files = [tmp_path / f"travelling_window{part}.csv" for part in ("", "_blocks")]
+    for file, table in zip(files, (runs("convex"), blocks("convex")), strict=True):
+        table.to_csv(file, index=False)
+    before = [file.read_text() for file in files]
+    monkeypatch.setattr("sys.argv", ["x", "--finished", "--folder", str(tmp_path / "none"), "--output", str(tmp_path)])
+    with pytest.raises(SystemExit, match="2"):
+        travelling_window.main()
+    assert "no run is finished" in capsys.readouterr().err and [file.read_text() for file in files] == before
+    monkeypatch.setattr(travelling_window, "finished", lambda *asked: ["one"])
+    monkeypatch.setattr(travelling_window, "tables_of", lambda done: (runs("plain"), blocks("plain")))
+    monkeypatch.setattr(travelling_window, "publish", lambda output, *tables: "")
+    travelling_window.main()
+    assert all(set(pd.read_csv(file)["surface"]) == {"plain", "convex"} for file in files)
+
+
+def test_a_window_of_another_width_has_a_bed_of_its_own(tmp_path):
+    """And a sample of its own; finished runs are told by what these files hold."""
+    case = Case("plain", WINDOW, 1)
+    wide = {**window.SETTINGS, "bed": {**window.SETTINGS["bed"], "width_mm": 160}}
+    usual, other = (chain_of(case, tmp_path, settings) for settings in (window.SETTINGS, wide))
+    assert usual.folder == other.folder and usual.bed_restart != other.bed_restart
+
+
 def test_cheaper_has_the_interval_of_the_scatter_of_processor_times():
     """Run-ins move both its ends alike. Costs of full bed and window are e and 1/e times 16 s: a ratio of 1."""
     some = runs().assign(bed_processor_s=0.0)

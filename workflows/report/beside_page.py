@@ -34,6 +34,13 @@ def short_sections(sections: Sequence[Section], docs: Path, name: str, published
     return shortened
 
 
+def remove_unlinked(docs: Path, name: str, text: str) -> None:
+    """Remove the files of an earlier page that the page of today does not link; name: as for `short_sections`."""
+    for file in (docs / FOLDER).glob(f"{name}_*"):
+        if f"]({FOLDER}/{file.name})" not in text:
+            file.unlink()
+
+
 def _short(section: Section, blocks: Sequence[Block], docs: Path, name: str, published: str) -> Iterator[Block]:
     """Yield the blocks of a section, links in place of what is long, one in place of all published numbers."""
     elsewhere = [block for block in blocks if published and isinstance(block, Table) and block.beside_source is True]

@@ -32,7 +32,7 @@ from bulkwear.workflows.config.rounds import rounds_of
 from bulkwear.workflows.engine.project import work_here
 from bulkwear.workflows.engine.provenance import package_cases, simulating_code
 from bulkwear.workflows.engine.state import STATE
-from bulkwear.workflows.report.beside_page import short_sections
+from bulkwear.workflows.report.beside_page import remove_unlinked, short_sections
 from bulkwear.workflows.report.page import FORECAST, cost_totals, finding_of, jobs_of, package_version
 from bulkwear.workflows.report.page_parameters import figure_remarks, page_parameters
 from bulkwear.workflows.report.products import figures_of
@@ -170,9 +170,11 @@ def write_results(folder: Path, docs: Path, study: Study, settings: Mapping[str,
     for section in short_sections([*kept, *costs], docs, name, path.name if listed else ""):
         parts.append(f"## {section.title}\n\n" + "\n".join(written(block, name, captions) for block in section.blocks))
     older = warnings_of(versions_in_folder(folder, study), simulating_code(study.case), package_cases(study.case))
-    path.write_text(with_banner("\n".join(parts), older), encoding="utf-8")
+    text = with_banner("\n".join(parts), older)
+    path.write_text(text, encoding="utf-8")
     for picture in pictures:
         save_small(picture, docs / picture_file(name, picture.stem))
+    remove_unlinked(docs, name, text)
     if listed:
         keep_origin(docs, origin_of(path.name, folder, study, settings))
         write_published_numbers(docs, path.name, kept)

@@ -49,9 +49,14 @@ def states_of(origin: Origin) -> list[Path]:
 
 
 def has_written(origin: Origin, docs: Path) -> bool:
-    """Return whether a command has written its page since the last of its simulations that are there."""
+    """Return whether a command has written its page since the last of its simulations that are there.
+
+    The table beside the page tells it: warnings are written into the page itself.
+    """
     newest = max((path.stat().st_mtime for path in states_of(origin)), default=None)
-    return newest is not None and newest <= (docs / origin.page).stat().st_mtime
+    table = table_file(origin, docs)
+    written = table if table.is_file() else docs / origin.page
+    return newest is not None and newest <= written.stat().st_mtime
 
 
 def origin_of_command(origin: Origin) -> Origin:
@@ -104,5 +109,10 @@ def table_of(origin: Origin, docs: Path) -> pd.DataFrame:
     """Return the table of every simulation beside a page, empty where there is none."""
     import pandas as pd
 
-    path = docs / f"{Path(origin.page).stem.removesuffix('_results')}.csv"
+    path = table_file(origin, docs)
     return pd.read_csv(path) if path.is_file() else pd.DataFrame()
+
+
+def table_file(origin: Origin, docs: Path) -> Path:
+    """Return where the table of every simulation beside a page lies, or would."""
+    return docs / f"{Path(origin.page).stem.removesuffix('_results')}.csv"

@@ -51,7 +51,9 @@ def mark(docs: Path, changes: Sequence[Change]) -> None:
     for origin in origins:
         path = docs / origin.page
         if path.suffix == ".md" and path.is_file():
-            path.write_text(with_banner(path.read_text(encoding="utf-8"), sentences(origin)), encoding="utf-8")
+            text = path.read_text(encoding="utf-8")
+            if (marked := with_banner(text, sentences(origin))) != text:  # else its time stays
+                path.write_text(marked, encoding="utf-8")
     index = index_page(origins, sentences, changes, checks) + of_studies(origins)
     (docs / INDEX).write_text(index, encoding="utf-8")
     (docs / GALLERY).write_text(gallery(docs, origins), encoding="utf-8")

@@ -4,10 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.statistics.factors import factors_of, half_normal_table, pseudo_error
+from bulkwear.postproc.statistics.factors import half_normal_table, pseudo_error
 from bulkwear.postproc.statistics.model_terms import candidate_terms, told_apart
 from tests import REPOSITORY
 from tests.support.models import coded_table
+from tests.support.screening_study import factors_of
 
 ROUNDING = 1e-10
 HALF_UNIT = 5e-6  # of the last printed digit

@@ -4,8 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.statistics.factors import Factor, factor_of, factors_of
+from bulkwear.postproc.statistics.factors import Factor, factor_of
 from tests.support.models import coded_table
+from tests.support.screening_study import factors_of
 
 ROUNDING = 1e-13  # of a logarithm and its power
 

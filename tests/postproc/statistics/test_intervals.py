@@ -17,7 +17,6 @@ from bulkwear.postproc.statistics.intervals import (
     estimate,
     estimates,
     interval_table,
-    scatter,
 )
 
 ROUNDING = 1e-12  # relative
@@ -113,16 +112,6 @@ def test_intervals_hold_the_truth_as_often_as_they_say(name):
         return low <= TRUTH <= high
 
     assert share(holds, name, TRIALS)[0] == pytest.approx(NOMINAL, abs=CHANCE)
-
-
-def test_parts_of_the_scatter_come_back():
-    """Packings that differ by 5 and blocks whose mean scatters by 1, of which none is correlated."""
-    random = np.random.default_rng(3)
-    packings = np.repeat(np.arange(200), 16)
-    values = 100.0 + random.normal(0.0, 5.0, 200)[packings] + random.normal(0.0, 4.0, len(packings))
-    found = scatter(values, packings)
-    assert found.between == pytest.approx(5.0, rel=0.15)  # three standard errors of a deviation of 200
-    assert found.within == pytest.approx(1.0, rel=0.25)  # the correction for correlation takes the larger side
 
 
 def test_correlated_values_have_a_larger_error():

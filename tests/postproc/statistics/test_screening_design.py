@@ -10,12 +10,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.statistics.factors import Factor, factors_of
+from bulkwear.postproc.statistics.factors import Factor
 from bulkwear.postproc.statistics.screening_design import coded_design, design_rows, design_text, main, parse_factor
 from bulkwear.workflows.config.schema import load_schema
 from bulkwear.workflows.config.validation import read_design
 from tests import REPOSITORY
 from tests.support.models import coded_table
+from tests.support.screening_study import factors_of
 
 COUNTS = range(4, 13)
 ROUNDING = 1e-12  # of logarithms of levels that double

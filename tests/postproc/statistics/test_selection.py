@@ -7,7 +7,6 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.statistics import selection
-from bulkwear.postproc.statistics.factors import factors_of
 from bulkwear.postproc.statistics.model_terms import candidate_terms, parse_term, term_columns, told_apart
 from bulkwear.postproc.statistics.regression import fit
 from bulkwear.postproc.statistics.screening_design import coded_design
@@ -22,6 +21,7 @@ from bulkwear.postproc.statistics.selection import (
 )
 from tests import REPOSITORY
 from tests.support.models import coded_table, obeys
+from tests.support.screening_study import factors_of
 
 NAMES = "abdhvt"
 MODEL = ("a", "b", "d", "v", "t", "b*d")

@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from bulkwear.workflows.report.beside_page import FOLDER, MOST_ROWS, short_sections
+from bulkwear.workflows.report.beside_page import FOLDER, MOST_ROWS, remove_unlinked, short_sections
 from bulkwear.workflows.report.sections import Cards, Listing, Points, Section, Table, Text
 
 LOADS = pd.DataFrame({"part": [f"liner_{k}" for k in range(MOST_ROWS + 1)], "force_N": 1234.56789})
@@ -17,6 +17,15 @@ def test_a_long_table_is_a_file_beside_the_page(tmp_path):
     assert text == Text(f"[Table of {len(LOADS)} rows]({FOLDER}/chute_quick_loads.csv). Mean force.")
     kept = pd.read_csv(tmp_path / FOLDER / "chute_quick_loads.csv")
     pd.testing.assert_frame_equal(kept, LOADS, rtol=1e-5)
+
+
+def test_what_an_earlier_page_left_is_removed(tmp_path):
+    """Of the same study and fidelity, unless the page of today links it."""
+    (tmp_path / FOLDER).mkdir()
+    for name in ("chute_quick_loads.csv", "chute_quick_beds.csv", "chute_standard_beds.csv"):
+        (tmp_path / FOLDER / name).write_text("")
+    remove_unlinked(tmp_path, NAME, f"[Table of 50 rows]({FOLDER}/chute_quick_loads.csv). Mean force.")
+    assert {path.name for path in (tmp_path / FOLDER).iterdir()} == {"chute_quick_loads.csv", "chute_standard_beds.csv"}
 
 
 def test_what_is_short_stays(tmp_path):

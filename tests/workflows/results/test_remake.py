@@ -26,7 +26,7 @@ from bulkwear.workflows.report.provenance_of_pages import (
     write_origins,
 )
 from bulkwear.workflows.report.simulated import Simulated, version_name
-from bulkwear.workflows.results import commands
+from bulkwear.workflows.results import commands, index
 from bulkwear.workflows.results import remake as module
 from bulkwear.workflows.results.index import index_page
 from tests import REPOSITORY
@@ -223,6 +223,12 @@ def test_a_page_of_a_command_is_renewed_from_its_simulations(done, tmp_path):
     assert older(kept, [], code_of_cases(("pin_on_disc",))) == []
     newer = (tmp_path / origin.page).stat().st_mtime + 1.0
     os.utime(state, (newer, newer))
+    assert "its cost was not kept" in commands.remake_by_command(origin, tmp_path, False)
+    index.mark(tmp_path, [])  # it writes into pages too
+    table = commands.table_file(origin, tmp_path)
+    table.write_text("a\n1\n")
+    os.utime(table, (newer - 2.0, newer - 2.0))
+    os.utime(tmp_path / origin.page, (newer + 2.0, newer + 2.0))
     assert "its cost was not kept" in commands.remake_by_command(origin, tmp_path, False)
     assert done == []
 

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.statistics.factors import Factor, factors_of
+from bulkwear.postproc.statistics.factors import Factor
 from bulkwear.workflows.cases.sliding_sample.screening.regression_warnings import screening_warnings
 from bulkwear.workflows.cases.sliding_sample.screening.study_regression import (
     best_design_table,
@@ -19,6 +19,7 @@ from bulkwear.workflows.cases.sliding_sample.screening.study_regression import (
     wear_at,
 )
 from tests import REPOSITORY
+from tests.support.screening_study import factors_of
 
 SYMBOLS = "abdhvt"
 ROUNDING = 1e-9

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.plots.style import remarks_of
-from bulkwear.postproc.statistics.factors import Factor, factors_of
+from bulkwear.postproc.statistics.factors import Factor
 from bulkwear.workflows.cases.sliding_sample.screening.plots import regression
 from bulkwear.workflows.cases.sliding_sample.screening.study_regression import (
     chance_test,
@@ -17,6 +17,7 @@ from bulkwear.workflows.cases.sliding_sample.screening.study_regression import (
     screen,
 )
 from tests import REPOSITORY
+from tests.support.screening_study import factors_of
 
 REMARKS = ["particles at scale 2", "travel 160 mm of 1000 mm"]
 LABELS = {name: f"{name} (mm)" for name in "abdhvt"}
