@@ -26,7 +26,7 @@ SCALES = (1, 2, 4, 6, 8)
 EDGE = 1e-3  # m, of the triangles, as on the source's disc; those of its sample are not told
 FLAT_SIDE = 0.03  # m
 SPHERES = 1000  # at random places, of each scale and way
-GRAVEL = (2.0 * 0.07e9 * 1.24, 0.24)  # Pa, -: Young's modulus and Poisson's ratio (Yan 2022, Table 3.2)
+GRAVEL = (youngs_modulus(0.07e9, 0.24), 0.24)  # Pa, -: Young's modulus and Poisson's ratio (Yan 2022, Table 3.2)
 BULK_DENSITY, THICKNESS = 1450.0, 0.046  # kg/m3, m, of the source's bed
 NEWTONS_TIMES = (1.0, 10.0)  # loads, over the bed's weight on a square as wide as the particle
 

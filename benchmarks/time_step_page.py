@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from benchmarks.changes import BEYOND, FAILED, UNDECIDED, WITHIN, changes
-from benchmarks.stiffness import LIMIT, PERCENT
+from benchmarks.stiffness import CASE, LIMIT, PERCENT, VELOCITY
 from bulkwear.workflows.report.markdown import bullet, markdown, prose
 
 RESPONSES = {"sliding_work_J_per_m": "sliding work", "impact_energy_J_per_m": "impact energy"}  # that wear follows
@@ -106,12 +106,13 @@ def results_page(table: pd.DataFrame) -> str:
         ),
         "\n".join(bullet(f"{said_of(row['model'], found, row)}.") for _, row in told.iterrows()),
         prose(
-            f"A bed of some {first['particles']:.0f} particles of twice the real size slides at 2 m/s over"
-            f" {first['travel_m']:g} m of channel, over a plain sample and over a convex one, whose front ends"
-            " particles strike. Sliding work is what Archard's law is proportional to, impact energy what laws of"
-            " impacts are. Change: against the shortest time step that ran, packings taken as blocks. A limit is the"
-            " longest step that is shown to be within, where no shorter one is shown to be beyond; of shorter ones with"
-            f" few packings more is not known. It is told where every time step ran with {ENOUGH} packings at least."
+            f"A bed of some {first['particles']:.0f} particles of {CASE['particle_scale']:g} times the real size slides"
+            f" at {VELOCITY:g} m/s over {first['travel_m']:g} m of channel, over a plain sample and over a convex one,"
+            " whose front ends particles strike. Sliding work is what Archard's law is proportional to, impact energy"
+            " what laws of impacts are. Change: against the shortest time step that ran, packings taken as blocks. A"
+            " limit is the longest step that is shown to be within, where no shorter one is shown to be beyond; of"
+            " shorter ones with few packings more is not known. It is told where every time step ran with"
+            f" {ENOUGH} packings at least."
         ),
         markdown(told),
         prose(f"Processor time of the solver at equal time steps, over `{first['model']}`: {cost}; not run in turn."),

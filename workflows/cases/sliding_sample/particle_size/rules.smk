@@ -22,6 +22,7 @@ rule packing_profiles:
         runs=lambda wildcards: packed_runs(study_of(wildcards)),
         packing=lambda wildcards: to_si(study_of(wildcards).settings)["packing"],
         templates=templates_digest("packed_container"),
+        code=code_of_pages("bulkwear.workflows.cases.sliding_sample.particle_size.packings"),
     message:
         "Packings at every particle scale of {wildcards.study}"
     script:
