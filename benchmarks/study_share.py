@@ -24,9 +24,15 @@ from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.cycles import OWN_TIME
 from bulkwear.workflows.engine.job import processor_seconds_of
-from bulkwear.workflows.report.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs
+from bulkwear.workflows.report.cost import (
+    BENCHMARK_SUFFIX,
+    FORECAST,
+    against_forecast,
+    benchmark_seconds,
+    cost_totals,
+    job_costs,
+)
 from bulkwear.workflows.report.markdown import markdown
-from bulkwear.workflows.report.page import FORECAST, cost_totals
 
 RESULTS = Path("results")
 SECONDS_PER_HOUR = 3600.0

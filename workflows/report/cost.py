@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
+from bulkwear.workflows.report.text import data_uri
+
+FORECAST = "forecast.csv"
 BENCHMARK_SUFFIX = ".benchmark.tsv"
 
 
@@ -66,3 +70,61 @@ def outside_solver_share(jobs: pd.DataFrame) -> float:
     """Return (sum of wall_s - sum of solver_s) / sum of wall_s over all jobs, -."""
     total = float(jobs["wall_s"].sum())
     return (total - float(jobs["solver_s"].sum())) / total
+
+
+def cost_parts(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return what the page's template shows of the cost of a study's jobs."""
+    jobs = jobs_of(study, folder)
+    return {
+        "jobs": solver_jobs(jobs),
+        "jobs_csv": data_uri(jobs.to_csv(index=False).encode(), "text/csv"),
+        "totals": cost_totals(jobs),
+        "forecast_by": pd.read_csv(folder / FORECAST)["by"].iloc[0],
+    }
+
+
+def jobs_of(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
+    """Return the cost of every job behind the page, see `job_costs`."""
+    files = [folder / "logs" / f"{job}{BENCHMARK_SUFFIX}" for job in study["jobs"]]
+    costs = {f"worn_run_{run}": folder / run / "cost.csv" for run in study["runs"]}
+    costs |= {f"settled_bed_{bed}": folder / "beds" / bed / "cost.csv" for bed in study["beds"]}
+    costs |= {job: folder / path for job, path in study["told"].get("costs", {}).items()}
+    tables = {job: pd.read_csv(path) for job, path in costs.items() if path.is_file()}
+    jobs = job_costs(benchmark_seconds([path for path in files if path.is_file()]), tables)
+    return against_forecast(jobs, pd.read_csv(folder / FORECAST))
+
+
+def solver_jobs(jobs: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return the jobs that call the solver, and all others in one row."""
+    solving = jobs[jobs["solver_s"] > 0.0]
+    rest = jobs[jobs["solver_s"] == 0.0]
+    others = {"job": f"{len(rest)} other jobs (meshes, tables, figures)", "wall_s": rest["wall_s"].sum()}
+    rows = [
+        *solving.to_dict("records"),
+        {**dict.fromkeys(jobs.columns), **others, "outside_s": others["wall_s"]},
+    ]
+    return [{**row, "solver_share": share_of(row["solver_s"], row["wall_s"])} for row in rows]
+
+
+def share_of(part: float | None, whole: float) -> float:
+    """Return a share in percent, 0 where nothing was taken."""
+    return 100.0 * (part or 0.0) / whole if whole else 0.0
+
+
+def cost_totals(jobs: pd.DataFrame) -> dict[str, float]:
+    """Return the sums of all jobs: wall_s, solver_s, outside_s, outside_percent, particle steps per second, forecast_s,
+    measured_over_forecast.
+    """
+    solver_seconds, expected = (float(jobs[name].sum()) for name in ("solver_s", "forecast_s"))
+    measured = float((jobs["measured_over_forecast"] * jobs["forecast_s"]).sum())
+    steps = float((jobs["particle_steps_per_s"] * jobs["solver_s"]).sum()) if solver_seconds else 0.0
+    return {
+        "jobs": len(jobs),
+        "wall_s": float(jobs["wall_s"].sum()),
+        "solver_s": solver_seconds,
+        "outside_s": float(jobs["outside_s"].sum()),
+        "outside_percent": 100.0 * outside_solver_share(jobs),
+        "particle_steps_per_s": steps / solver_seconds if solver_seconds else float("nan"),
+        "forecast_s": expected,
+        "measured_over_forecast": measured / expected if expected else float("nan"),
+    }

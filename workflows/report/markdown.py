@@ -33,7 +33,9 @@ from bulkwear.workflows.engine.project import work_here
 from bulkwear.workflows.engine.provenance import package_cases, simulating_code
 from bulkwear.workflows.engine.state import STATE
 from bulkwear.workflows.report.beside_page import remove_unlinked, short_sections
-from bulkwear.workflows.report.page import FORECAST, cost_totals, finding_of, jobs_of, package_version
+from bulkwear.workflows.report.cost import FORECAST, cost_totals, jobs_of
+from bulkwear.workflows.report.made_by import package_version
+from bulkwear.workflows.report.page import finding_of
 from bulkwear.workflows.report.page_parameters import figure_remarks, page_parameters
 from bulkwear.workflows.report.products import figures_of
 from bulkwear.workflows.report.provenance_of_pages import FILE, LINE, Origin, keep_origin, recorded, with_banner

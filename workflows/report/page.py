@@ -5,11 +5,9 @@ figures."""
 
 from __future__ import annotations
 
-import importlib.metadata
 import json
 import os
-import platform
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -17,30 +15,17 @@ from typing import Any
 import jinja2
 import pandas as pd
 
-from bulkwear.postproc.readers.cycle_folders import cycle_files
-from bulkwear.postproc.readers.solver_log import solver_version
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
 from bulkwear.postproc.tables.summary import NAMES, read_summary
 from bulkwear.workflows.config.rounds import last_round
 from bulkwear.workflows.config.until import UNTIL
 from bulkwear.workflows.engine.cases import find_case
-from bulkwear.workflows.engine.project import PACKAGE, current_project
-from bulkwear.workflows.engine.provenance import commit_of, git, package_cases, package_commit, simulating_code
-from bulkwear.workflows.engine.provenance import package_version as installed_version
-from bulkwear.workflows.engine.records import read_record
-from bulkwear.workflows.engine.solver import LOG
 from bulkwear.workflows.report.charts import chart_text
-from bulkwear.workflows.report.cost import (
-    BENCHMARK_SUFFIX,
-    against_forecast,
-    benchmark_seconds,
-    job_costs,
-    outside_solver_share,
-)
+from bulkwear.workflows.report.cost import cost_parts
+from bulkwear.workflows.report.made_by import simulated, solver_warnings, versions
 from bulkwear.workflows.report.page_parameters import REPORT_FOLDER, page_of
 from bulkwear.workflows.report.products import Product, products_of
 from bulkwear.workflows.report.sections import DIGITS, Block, Table, with_all_figures
-from bulkwear.workflows.report.simulated import said_of, versions_of, warnings_of
 from bulkwear.workflows.report.text import data_uri, decks_of, name_and_unit, number, setting_rows, simplifications
 from bulkwear.workflows.report.verdict import with_verdict
 
@@ -51,19 +36,6 @@ PERCENT_DECIMALS = 6  # of a share: below is what sums leave of zero
 LARGE_VOLUME = 1e5  # mm3, of the most worn run, from which on cm3 are read more easily
 CUBIC_CENTIMETRE = 1e3  # mm3
 LONGEST_NAME = 40  # characters of a cell that is not broken into lines
-FORECAST = "forecast.csv"
-PACKAGES = (
-    "numpy",
-    "scipy",
-    "pandas",
-    "numba",
-    "meshio",
-    "gmsh",
-    "pyvista",
-    "vtk",
-    "matplotlib",
-    "snakemake",
-)
 
 
 def write_page(path: Path, study: Mapping[str, Any]) -> None:
@@ -119,7 +91,7 @@ def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "parameters": {run: json.dumps(values, indent=1) for run, values in study["parameters"].items()},
         "decks": decks_of(study, folder, page.DECKS),
         "warnings": solver_warnings(study, folder),
-        **(costs(study, folder) if study["wears"] else {}),
+        **(cost_parts(study, folder) if study["wears"] else {}),
         **({"balance": float(summary["largest_balance_error"].max())} if study["wears"] else {}),
     }
 
@@ -248,133 +220,6 @@ def run_columns(study: Mapping[str, Any], summary: pd.DataFrame) -> list[dict[st
 def _last_words(key: str) -> str:
     """Return the last two words of a dotted key, parts.liner.file: liner file."""
     return " ".join(key.split(".")[-2:])
-
-
-# ---------------------------------------------------------------- cost and provenance
-
-
-def costs(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return what the template shows of the cost of a study's jobs."""
-    jobs = jobs_of(study, folder)
-    return {
-        "jobs": solver_jobs(jobs),
-        "jobs_csv": data_uri(jobs.to_csv(index=False).encode(), "text/csv"),
-        "totals": cost_totals(jobs),
-        "forecast_by": pd.read_csv(folder / FORECAST)["by"].iloc[0],
-    }
-
-
-def jobs_of(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
-    """Return the cost of every job behind the page, see `analysis.cost.job_costs`."""
-    files = [folder / "logs" / f"{job}{BENCHMARK_SUFFIX}" for job in study["jobs"]]
-    costs = {f"worn_run_{run}": folder / run / "cost.csv" for run in study["runs"]}
-    costs |= {f"settled_bed_{bed}": folder / "beds" / bed / "cost.csv" for bed in study["beds"]}
-    costs |= {job: folder / path for job, path in study["told"].get("costs", {}).items()}
-    tables = {job: pd.read_csv(path) for job, path in costs.items() if path.is_file()}
-    jobs = job_costs(benchmark_seconds([path for path in files if path.is_file()]), tables)
-    return against_forecast(jobs, pd.read_csv(folder / FORECAST))
-
-
-def solver_jobs(jobs: pd.DataFrame) -> list[dict[str, Any]]:
-    """Return the jobs that call the solver, and all others in one row."""
-    solving = jobs[jobs["solver_s"] > 0.0]
-    rest = jobs[jobs["solver_s"] == 0.0]
-    others = {"job": f"{len(rest)} other jobs (meshes, tables, figures)", "wall_s": rest["wall_s"].sum()}
-    rows = [
-        *solving.to_dict("records"),
-        {**dict.fromkeys(jobs.columns), **others, "outside_s": others["wall_s"]},
-    ]
-    return [{**row, "solver_share": share_of(row["solver_s"], row["wall_s"])} for row in rows]
-
-
-def share_of(part: float | None, whole: float) -> float:
-    """Return a share in percent, 0 where nothing was taken."""
-    return 100.0 * (part or 0.0) / whole if whole else 0.0
-
-
-def cost_totals(jobs: pd.DataFrame) -> dict[str, float]:
-    """Return the sums of all jobs: wall_s, solver_s, outside_s, outside_percent, particle steps per second, forecast_s,
-    measured_over_forecast.
-    """
-    solver_seconds, expected = (float(jobs[name].sum()) for name in ("solver_s", "forecast_s"))
-    measured = float((jobs["measured_over_forecast"] * jobs["forecast_s"]).sum())
-    steps = float((jobs["particle_steps_per_s"] * jobs["solver_s"]).sum()) if solver_seconds else 0.0
-    return {
-        "jobs": len(jobs),
-        "wall_s": float(jobs["wall_s"].sum()),
-        "solver_s": solver_seconds,
-        "outside_s": float(jobs["outside_s"].sum()),
-        "outside_percent": 100.0 * outside_solver_share(jobs),
-        "particle_steps_per_s": steps / solver_seconds if solver_seconds else float("nan"),
-        "forecast_s": expected,
-        "measured_over_forecast": measured / expected if expected else float("nan"),
-    }
-
-
-def simulation_folders(study: Mapping[str, Any], folder: Path) -> list[Path]:
-    """Return the folders of a study's simulations."""
-    return find_case(study["case"]).simulation_folders(folder, list(study["runs"]))
-
-
-def simulated(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return what the template says of the versions that simulated a study, and what of the code is newer."""
-    case = find_case(study["case"])
-    found = versions_of(simulation_folders(study, folder), [folder / "beds" / bed for bed in study["beds"]])
-    days = sorted(day for version in found for day in version.dates if day)
-    return {
-        "simulated": said_of(found),
-        "simulated_on": " to ".join(dict.fromkeys([days[0], days[-1]])) if days else "",
-        "page_by": package_version(),
-        "older": warnings_of(found, simulating_code(case), package_cases(case)),
-    }
-
-
-def versions(study: Mapping[str, Any], folder: Path) -> dict[str, str]:
-    """Return the versions of everything that made the results."""
-    log = next((log for run in simulation_folders(study, folder) for log in cycle_files(run, LOG)), None)
-    said = solver_version(log) if log else None
-    found = {"LIGGGHTS": said.removeprefix("Version ") if said else "not reported"}
-    project = current_project()
-    found["bulkwear, which wrote this page"] = package_version()
-    if not project.is_package:
-        found["this project"] = commit(project.folder)
-    found["Python"] = f"{platform.python_version()} on {platform.system()} {platform.machine()}, {os.cpu_count()} cores"
-    for name in PACKAGES:
-        try:
-            found[name] = importlib.metadata.version(name)
-        except importlib.metadata.PackageNotFoundError:
-            continue
-    return found
-
-
-def package_version() -> str:
-    """Return the commit of the package, or the version that was installed."""
-    if package_commit():
-        return commit(PACKAGE)
-    version = installed_version()
-    return f"version {version}" if version else "version not known"
-
-
-def commit(repository: Path) -> str:
-    """Return the commit of a repository, and whether files differ from it; what is known where git is not there."""
-    found = commit_of(repository)
-    if not found:
-        return "commit not known"
-    return f"commit {found}{' with changes' if git(repository, 'status', '--porcelain') else ''}"
-
-
-def solver_warnings(study: Mapping[str, Any], folder: Path) -> list[dict[str, Any]]:
-    """Return the solver's warnings over all cycles of all simulations: what was said, how often."""
-    counts: dict[str, int] = {}
-    for said, count in _warnings_of(simulation_folders(study, folder)):
-        counts[said] = counts.get(said, 0) + count
-    return [{"said": said, "count": count} for said, count in sorted(counts.items(), key=lambda item: -item[1])]
-
-
-def _warnings_of(folders: Iterable[Path]) -> Iterable[tuple[str, int]]:
-    for folder in folders:
-        for path in cycle_files(folder, "state.json"):
-            yield from read_record(path).get("solver_warnings", {}).items()
 
 
 def _picture(file: Path) -> str:

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 from bulkwear.workflows.engine.provenance import code_of_cases
 from bulkwear.workflows.engine.state import STATE
+from bulkwear.workflows.report.made_by import package_version
 from bulkwear.workflows.report.markdown import SECONDS_PER_HOUR, simulated_between
-from bulkwear.workflows.report.page import package_version
 from bulkwear.workflows.report.provenance_of_pages import Origin, keep_origin, recorded, versions_in
 from bulkwear.workflows.report.simulated import Simulated, versions_of
 from bulkwear.workflows.results.index import redo

@@ -9,7 +9,7 @@ import pytest
 
 from bulkwear.postproc.plots.page import plotly_script
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.report.page import commit
+from bulkwear.workflows.report.made_by import commit
 from bulkwear.workflows.report.page_parameters import page_parameters
 from bulkwear.workflows.report.products import figures_of
 from bulkwear.workflows.report.text import UNDEFINED, name_and_unit, number, setting_rows
