@@ -236,7 +236,7 @@ def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
     """What is finished is not simulated again; a tiny bed, one window, both looked at block by block."""
     tiny = {
         **window.QUICK,
-        "particle_scale": 12.0,
+        "particle_scale": 5.0,
         "bed": {"width_mm": 80, "exchange_mm": 80, "allow_thin_bed": True},
         "sliding": {"run_in_mm": 20, "travel_mm": 200, "cycles": 2},
         "solver": {"picture_interval_mm": 100, "wear_interval_mm": 100},
