@@ -8,6 +8,7 @@ import yaml
 
 from benchmarks.rolling_page import MODELS
 from benchmarks.scale_page import source_ratio
+from benchmarks.time_step_page import answers
 from bulkwear.workflows.engine.beds import (
     DENSITY_TOLERANCE,
     LEVEL_TOLERANCE,
@@ -24,7 +25,7 @@ from tests.support.told import rows, table, told
 GRAVEL = yaml.safe_load((REPOSITORY / "config/materials.yaml").read_text(encoding="utf-8"))["particles"]["river_gravel"]
 MEDIAN = 1e-3 * GRAVEL["median_diameter_mm"]  # m
 UNITS = {"mass": "kg", "level": "mm"}  # of measures in tables of beds
-SHORTEST, CHOSEN = "0.1", "0.4"  # time steps over the Rayleigh time
+CHOSEN = "0.4"  # time step over the Rayleigh time
 
 
 def less(ratio):
@@ -375,12 +376,26 @@ def test_what_decisions_say_of_softness_and_time_steps():
     assert (
         "{} % ({} to {}) of wear on a plain sample and {} % ({} to {}) on a convex one".format(*plain, *convex) in page
     )
-    again = table("time_step_limits_again.csv", dtype={"rayleigh_fraction": str})
-    works = again[again["surface"] == "plain"].pivot(
-        index="seed", columns="rayleigh_fraction", values="sliding_work_J_per_m"
-    )
-    change = 100.0 * (works[CHOSEN] / works[SHORTEST] - 1.0).mean()
-    assert f"{CHOSEN} changes it by {change:.2f} %" in page
+    found = answers(table("time_step_limits.csv"))
+    change = {key: told.set_index("value").loc[float(CHOSEN)] for key, told in found.items()}
+    ends = ["change", "change_low", "change_high"]
+    work, impact = ["sliding_work_J_per_m", "impact_energy_J_per_m"]
+    said = [
+        "{:.1f} % ({:.1f} to {:.1f})".format(*(100.0 * change["own_spin", "convex", each][ends]))
+        for each in (work, impact)
+    ]
+    assert f"it adds {said[0]} of sliding work and {said[1]} of impact energy under `own_spin`, in 60 packings" in page
+    assert change["own_spin", "convex", work]["runs"] == 60
+    for other in ("rolling_friction.md", "particle_size.md"):
+        assert f"on a plain sample by less than 2 % and adds {said[0]} on a convex one" in told(other)
+    plain = [change[model, "plain", work] for model in MODELS]
+    assert {each["verdict"] for each in plain} == {
+        "within"
+    } and f"{CHOSEN} of the Rayleigh time under a sliding" in page
+    told_of = {model: found[model, "convex", work].set_index("value")["verdict"] for model in MODELS}
+    assert told_of["cdt"][0.5] == "beyond" and told_of["epsd2"][0.6] == "beyond"
+    others = [each for model in ("cdt", "epsd2", "rvd") for each in told_of[model].loc[0.2:0.4]]
+    assert set(others) == {"undecided"} and "beyond" not in set(told_of["rvd"])
 
 
 def test_what_a_travelling_window_changes():

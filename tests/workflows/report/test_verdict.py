@@ -79,8 +79,8 @@ def test_a_time_step_beyond_what_is_shown_calls_for_care():
         runs = [{"rolling_friction": model, "rayleigh_fraction": fraction} for model, fraction in solvers]
         return time_step_light({"parameters": {str(number): {"solver": run} for number, run in enumerate(runs)}})
 
-    assert light(("own_spin", 0.2), ("own_spin", SHOWN["own_spin"])).state == SOUND
-    found = light(("own_spin", 0.4), ("cdt", 0.05), ("cdt", 0.4))
+    assert light(("own_spin", 0.05), ("own_spin", SHOWN["own_spin"])).state == SOUND
+    found = light(("own_spin", 0.1), ("cdt", 0.05), ("cdt", 0.4))
     assert found.state == CARE and "0.4 of the Rayleigh time under cdt, shown up to 0.1" in found.said
     assert "own_spin" not in found.said
     assert "under off, of which no limit is known" in light(("off", 0.1)).said
