@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
+import yaml
+
 from bulkwear.meshes.own.mesh import own_mesh
 from bulkwear.postproc.mesh import read_surface
 from bulkwear.postproc.readers.contacts import read_contacts
@@ -21,6 +23,7 @@ from bulkwear.postproc.readers.restart_file import read_restart
 from bulkwear.postproc.readers.solver_log import last_step, thermo_table
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.config.study_files import EXTENDS
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.accounting import LEDGER
 from bulkwear.workflows.engine.project import Project, ProjectError
@@ -192,11 +195,17 @@ def is_of_configuration(fault: Exception) -> bool:
 
 
 def files_of_studies(project: Project) -> dict[str, list[str]]:
-    """Return {study: files of its settings, and the tables that they name}, as paths from a project's folder."""
+    """Return {study: files of its settings, those of a study that it extends among them, and the tables that they
+    name}, as paths from a project's folder.
+    """
     folder, found = project.folder, {}
     for path in sorted((folder / "config" / "studies").glob("*.yaml")):
         case = load_study(path.stem, project=project).case.name
-        settings = [f"config/studies/{path.name}", f"config/cases/{case}.yaml", "config/default.yaml"]
+        studies = [path.stem]
+        while base := yaml.safe_load((path.parent / f"{studies[-1]}.yaml").read_text(encoding="utf-8")).get(EXTENDS):
+            studies.append(base)
+        settings = [f"config/studies/{name}.yaml" for name in studies]
+        settings += [f"config/cases/{case}.yaml", "config/default.yaml"]
         named = "".join((folder / name).read_text(encoding="utf-8") for name in settings)
         tables = [table for table in sorted((folder / "config").rglob("*.csv")) if table.name in named]
         found[path.stem] = [*settings, "config/materials.yaml", *(str(table.relative_to(folder)) for table in tables)]
