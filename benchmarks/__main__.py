@@ -22,6 +22,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from benchmarks.command_line import command, output_folder, read_table
 from benchmarks.page import page, table_text
 from bulkwear.workflows.forecast.rates import machine_facts
 
@@ -69,7 +70,7 @@ def main() -> None:
     parser.add_argument("--only", metavar="NAME", choices=MODULES, action="append", help=f"of {', '.join(MODULES)}")
     parser.add_argument("--quick", action="store_true", help="tiny sizes; nothing is written")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks"), help="for simulations")
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument("--redraw", action="store_true", help="write the page from the table of earlier measurements")
     given = parser.parse_args()
     file = given.output / "benchmarks.csv"
@@ -92,8 +93,8 @@ def main() -> None:
 
 def write_page(file: Path) -> None:
     """Write the page of a table of benchmarks beside it. The machine named is this one."""
-    file.with_suffix(".md").write_text(page(pd.read_csv(file), machine_facts()), encoding="utf-8")
+    file.with_suffix(".md").write_text(page(read_table(file), machine_facts()), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

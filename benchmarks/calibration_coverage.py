@@ -27,8 +27,8 @@ import pandas as pd
 from scipy import stats
 from scipy.special import logsumexp
 
+from benchmarks.command_line import at_least_one, command, output_folder, read_table
 from benchmarks.page import markdown
-from benchmarks.runs import at_least_one
 from bulkwear.postproc.flow.bulk_test import RESPONSES as BULK_RESPONSES
 from bulkwear.postproc.inference.loop import Request, calibrate, posterior
 from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, interval
@@ -296,7 +296,7 @@ def whole_table(number: int, pool: ProcessPoolExecutor) -> pd.DataFrame:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--number", type=at_least_one, default=NUMBER, help="calibrations per case")
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument("--redraw", action="store_true", help="write the page from the table of an earlier run")
     given = parser.parse_args()
     gravel = pd.concat([of_gravel(Path("docs"), size) for size in (0.0, MODEL_DISCREPANCY)])
@@ -310,9 +310,9 @@ def main() -> None:
                 asked = [(wall_test, seed) for seed in range(given.number)]
                 rows += told_rates(list(pool.map(one_told, asked, chunksize=2)), wall_test)
             pd.DataFrame(rows).to_csv(told_file, index=False, float_format="%.4g")
-    text = page(pd.read_csv(file), pd.read_csv(told_file, keep_default_na=False), gravel)
+    text = page(read_table(file), read_table(told_file, keep_default_na=False), gravel)
     file.with_suffix(".md").write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -20,29 +20,24 @@ from tempfile import TemporaryDirectory
 
 import pandas as pd
 
-from benchmarks.calibration_models_page import MODEL, SEARCHED, results_page
+from benchmarks.calibration_models_page import FIDELITY, MODEL, SEARCHED, results_page
+from benchmarks.command_line import at_least_one, command, output_folder, read_table
 from benchmarks.plots.rolling_models import families
-from benchmarks.rolling_models import SETTINGS
-from benchmarks.rolling_page import MODELS, NO_REST
-from benchmarks.runs import BY, DIGITS, at_least_one, attempted, simulated_by
+from benchmarks.rolling_case import MODELS, study_of
+from benchmarks.rolling_page import NO_REST
+from benchmarks.runs import BY, DIGITS, attempted, simulated_by
 from bulkwear.postproc.plots.style import save, save_small
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
 from bulkwear.workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
 from bulkwear.workflows.cases.calibration.driver import run_calibration
 from bulkwear.workflows.cases.calibration.outcome import Calibrated, read_calibrated
 from bulkwear.workflows.cases.calibration.simulations import FOLDERS
-from bulkwear.workflows.config.design import Study, load_study
+from bulkwear.workflows.config.design import Study
 from bulkwear.workflows.engine.state import digest
 
-FIDELITY = "quick"  # the shear box alone, in which every model comes to rest
 FILE, PAGE, FIGURE = "calibration_models.csv", "calibration_models_results.md", "calibration_models.png"
 TABLES = {"simulations.csv": True, "repeats.csv": False}  # of a calibration: whether its rows were searched
 EXACT = "%.10g"  # of the table, so that a page that is drawn again recommends the same pairs
-
-
-def study_of(model: str) -> Study:
-    """Return the calibration under a rolling model."""
-    return load_study("calibration", overrides={"fidelity": FIDELITY, "solver": dict(SETTINGS[model])})
 
 
 def calibrate(model: str, folder: Path, cores: int) -> pd.DataFrame:
@@ -51,7 +46,7 @@ def calibrate(model: str, folder: Path, cores: int) -> pd.DataFrame:
 
     folder: where its simulations stay, in a folder of the model. Raises SolverStoppedError.
     """
-    study, place = study_of(model), folder / model
+    study, place = study_of(model, FIDELITY), folder / model
     place.mkdir(parents=True, exist_ok=True)
     files = Path(measured_file(study)), Path(pairs_file(study))
     found: list[pd.DataFrame] = []
@@ -78,7 +73,7 @@ def calibrated(table: pd.DataFrame) -> dict[str, Calibrated]:
     """Return {model: finished calibration} of a table of all simulations, as from `calibrate`."""
     found = {}
     for model in (name for name in MODELS if (table.loc[table[MODEL] == name, "test"].notna()).any()):
-        rows, study = table[table[MODEL] == model].dropna(axis=1, how="all"), study_of(model)
+        rows, study = table[table[MODEL] == model].dropna(axis=1, how="all"), study_of(model, FIDELITY)
         with TemporaryDirectory() as place:
             for name, searched in TABLES.items():
                 rows[(rows["pair"] == SEARCHED) == searched].to_csv(Path(place, name), index=False)
@@ -112,14 +107,14 @@ def kept(file: Path, found: pd.DataFrame) -> pd.DataFrame:
     """Return a table of simulations, and before it the models of an earlier one that it does not have."""
     if not file.is_file():
         return found
-    earlier = pd.read_csv(file)
+    earlier = read_table(file, (MODEL,))
     return pd.concat([earlier[~earlier[MODEL].isin(found[MODEL])], found], ignore_index=True)
 
 
 def parser_of() -> argparse.ArgumentParser:
     """Return the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument("--models", nargs="+", choices=MODELS, default=MODELS, help="else all")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/calibration_models"))
     parser.add_argument("--cores", type=at_least_one, default=1, help="simulations side by side")
@@ -135,11 +130,11 @@ def main(given: Sequence[str] | None = None) -> None:
     for model in () if asked.redraw else asked.models:
         table = kept(file, calibrate(model, asked.folder, asked.cores))
         table.sort_values(MODEL, kind="stable").to_csv(file, index=False, float_format=EXACT)
-    table = pd.read_csv(file)
+    table = read_table(file, (MODEL,))
     if "test" not in table:
         parser.error(f"{file}: no model has a calibration; {table[NO_REST].iloc[0]}")
     print(publish(asked.output, table), flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

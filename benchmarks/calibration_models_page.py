@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from benchmarks.rolling_page import MODELS
+from benchmarks.rolling_case import MODELS, time_steps_said
 from bulkwear.postproc.inference.posterior import FAMILY_SHARE, interval
 from bulkwear.workflows.cases.calibration.figure_findings import reproduced
 from bulkwear.workflows.cases.calibration.outcome import Calibrated
@@ -17,6 +17,7 @@ from bulkwear.workflows.report.markdown import bullet, markdown, prose
 from bulkwear.workflows.report.sentences import PERCENT, listed
 
 MODEL = "model"  # column of the table of simulations
+FIDELITY = "quick"  # the shear box alone, in which every model comes to rest
 SEARCHED = "searched"  # in its column `pair`, of a simulation that the acquisition rule asked for
 SHEAR_ANGLE = "shear_angle_deg"
 NAMES = {"particle.contact.sliding_friction": "sliding", "particle.contact.rolling_friction": "rolling"}
@@ -99,7 +100,7 @@ def results_page(done: Mapping[str, Calibrated], failed: Mapping[str, str]) -> s
             f" alone, which is {aim.value:g} ± {aim.deviation:g} degrees (Yan 2022, Table 3.1), with particles"
             f" {first.parameters['particle']['scale']:g} times as large. In brackets: 95 % of the posterior. One"
             " response tells a band of pairs, not one of them: a model that recommends a pair does so by the middle of"
-            " its band. Coefficients are for the full radius. `cdt` has 0.1 of the Rayleigh time, the others 0.25."
+            f" its band. Coefficients are for the full radius. {time_steps_said(FIDELITY)}"
         ),
         markdown(pairs_table(done)),
         "![Pairs of frictions that fit the measured shear angle under each rolling model](calibration_models.png)",

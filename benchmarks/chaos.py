@@ -28,6 +28,7 @@ import pandas as pd
 
 from benchmarks import chaos_files, chaos_runs, chaos_studies
 from benchmarks.chaos_files import Outcome
+from benchmarks.command_line import command
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.accounting import LEDGER
 from bulkwear.workflows.engine.chain import Chain
@@ -184,4 +185,4 @@ def main(words: list[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    command(main)

@@ -25,11 +25,11 @@ from typing import Any
 
 import pandas as pd
 
+from benchmarks.command_line import at_least_one, command, output_folder, read_table
 from benchmarks.plots.critical_scale import ratio_by_candidate, ratio_by_scale
 from benchmarks.ratios import ASSUMED, ratio_intervals
 from benchmarks.runs import (
     BY,
-    at_least_one,
     attempted,
     failure_file,
     is_simulated,
@@ -271,7 +271,7 @@ def publish(output: Path, runs: pd.DataFrame) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument("--scales", type=int, nargs="+", default=SCALES, help="particle scales, rows S1 to S8")
     parser.add_argument("--candidates", nargs="+", choices=CANDIDATES, default=list(CANDIDATES), metavar="NAME")
     parser.add_argument("--packings", type=at_least_one, default=PACKINGS, help=f"of each candidate, else {PACKINGS}")
@@ -297,13 +297,15 @@ def main() -> None:
         write_table(file, wanted, given.folder)
         if not file.is_file():
             parser.error(f"{given.folder}: no run is finished; without --finished they are simulated.")
-    print(publish(given.output, pd.read_csv(file)), flush=True)
+    print(publish(given.output, read_table(file, KEYS)), flush=True)
 
 
 def without_reference(wanted: Sequence[Case], file: Path) -> list[float]:
     """Return the scales of runs for which neither these nor the table of earlier ones has the reference."""
-    known = pd.read_csv(file) if file.exists() else pd.DataFrame({"candidate": [], "particle_scale": []})
-    there = set(known.loc[known["candidate"] == REFERENCE, "particle_scale"])
+    there: set[float] = set()
+    if file.is_file():
+        known = read_table(file, KEYS)
+        there = set(known.loc[known["candidate"] == REFERENCE, "particle_scale"])
     there |= {case.scale for case in wanted if case.candidate == REFERENCE}
     return sorted({case.scale for case in wanted} - there)
 
@@ -323,4 +325,4 @@ def ordered(table: pd.DataFrame) -> pd.DataFrame:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -13,11 +13,11 @@ import argparse
 import time
 from collections.abc import Sequence
 from datetime import date
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import command, output_folder, read_table
 from benchmarks.plots.figures import groove_convergence
 from bulkwear.postproc.plots.style import save
 from tests.verification.groove_cases import (
@@ -130,14 +130,14 @@ def remarks(strokes: pd.DataFrame) -> list[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument("--redraw", action="store_true", help="from the tables of an earlier run")
     given = parser.parse_args()
     files = [given.output / f"groove_{name}.csv" for name in ("strokes", "sections")]
     if not given.redraw:
         for file, table in zip(files, study(), strict=True):
             table.to_csv(file, index=False, float_format="%.12g" if "strokes" in file.name else "%.5g")
-    strokes, sections = (pd.read_csv(file) for file in files)
+    strokes, sections = map(read_table, files)
     survived = strokes.loc[strokes["scheme"] == "per_triangle", "stroke"].max()
     shown = (("conserving", PASSES), ("spread_once", PASSES), ("conserving", survived), ("per_triangle", survived))
     table = stroke_table(strokes, shown)
@@ -147,4 +147,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import argparse
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import command, output_folder
 from benchmarks.plots.impact_angle import angle_curves
 from bulkwear.postproc.plots.style import save, save_small
 from bulkwear.postproc.reference.impact_angle import angle_of_largest_wear, finnie, impact_energy, oka, sliding_work
@@ -51,9 +51,8 @@ def table() -> pd.DataFrame:
 def main() -> None:
     """Write table and figure."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--output", type=Path, default=Path("benchmark"))
+    parser.add_argument("--output", type=output_folder, default="benchmark")
     folder = parser.parse_args().output
-    folder.mkdir(parents=True, exist_ok=True)
     found, degrees = table(), np.arange(0.0, 90.5, 0.5)
     found.round(DIGITS).to_csv(folder / "impact_angle.csv", index=False)
     largest = dict(zip(found["law"], found["largest_wear_deg"], strict=True))
@@ -65,4 +64,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import command
 from benchmarks.series_rates import rows as series_rows
 from bulkwear.postproc.statistics import crossing as crossings
 from bulkwear.postproc.statistics import intervals, verdicts
@@ -299,4 +300,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

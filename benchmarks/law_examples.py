@@ -12,13 +12,13 @@ import argparse
 import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import yaml
 
+from benchmarks.command_line import command, output_folder
 from bulkwear.postproc.reference import impact_angle
 from bulkwear.postproc.wear.coefficient import coefficient_per_pa, dimensionless_coefficient
 from bulkwear.postproc.wear.kernels import kernel_column, kernel_value
@@ -302,11 +302,10 @@ def folded(text: str) -> str:
 def main() -> None:
     """Write the page."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--output", type=Path, default=Path("benchmark"))
+    parser.add_argument("--output", type=output_folder, default="benchmark")
     folder = parser.parse_args().output
-    folder.mkdir(parents=True, exist_ok=True)
     (folder / "wear_laws.md").write_text(page(), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

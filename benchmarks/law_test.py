@@ -11,11 +11,11 @@ from __future__ import annotations
 import argparse
 import itertools
 import math
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import command, output_folder
 from benchmarks.law_examples import THRESHOLD
 from benchmarks.stream_laws import PAGE, with_table
 from bulkwear.postproc.reference.impact_angle import finnie, impact_energy, oka, sliding_work
@@ -110,9 +110,8 @@ def table(told: pd.DataFrame, near: pd.DataFrame) -> str:
 def main() -> None:
     """Write design and table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--output", type=Path, default=Path("benchmark"))
+    parser.add_argument("--output", type=output_folder, default="benchmark")
     folder = parser.parse_args().output
-    folder.mkdir(parents=True, exist_ok=True)
     runs = design()
     found = volumes(runs)
     over_mean = found / np.exp(np.log(found).mean())
@@ -124,4 +123,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

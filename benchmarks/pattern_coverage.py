@@ -17,6 +17,7 @@ import numpy as np
 import pandas as pd
 from scipy.spatial import cKDTree
 
+from benchmarks.command_line import command
 from bulkwear.meshes.lattice import Pattern, pattern_centres, pattern_rows
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.patterns import ROWS_PER_SPACING, pattern_of
@@ -117,4 +118,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

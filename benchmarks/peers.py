@@ -24,12 +24,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import at_least_one, command, output_folder, read_table
 from benchmarks.peer_case import LOADED_OVERLAP, PeerRun, answer, hertz_force, one_sphere
 from benchmarks.peer_codes import OURS, Code, codes, run_code, step_rate
 from benchmarks.peer_decks import FILL, filling_deck
 from benchmarks.peer_page import QUANTITIES, results_page, speeds
 from benchmarks.plots.peers import rates_by_code
-from benchmarks.runs import at_least_one
 from bulkwear.postproc.plots.style import save
 from bulkwear.workflows.engine.solver import DECK, SCREEN, SolverError, run_deck
 from bulkwear.workflows.forecast.rates import machine_facts
@@ -140,7 +140,7 @@ def publish(output: Path, table: pd.DataFrame, known: list[Code]) -> str:
 def main() -> None:
     """Run all codes that are there, then write table, figure and page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/peers"), help="for simulations")
     parser.add_argument("--peers", type=Path, default=Path("results/peers"), help="of the peers' environment")
     parser.add_argument("--rounds", type=at_least_one, default=ROUNDS)
@@ -155,8 +155,8 @@ def main() -> None:
         particles = bed(given.folder / f"bed_{count}", count, filling)
         write = partial(pd.DataFrame.to_csv, path_or_buf=output / FILE, index=False, float_format="%.6g")
         rounds(given.folder, PeerRun(steps, SAMPLES), particles, given.rounds, available(known), write)
-    print(publish(output, pd.read_csv(output / FILE), known), flush=True)
+    print(publish(output, read_table(output / FILE), known), flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -15,6 +15,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
+from benchmarks.command_line import command
 from bulkwear.meshes.disc import track_disc, track_stretch
 from bulkwear.postproc.mesh import SurfaceMesh, write_stl
 from bulkwear.postproc.reference.sphere_contact import touching_reach
@@ -90,4 +91,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import command, output_folder, read_table
 from benchmarks.plots.time_step import time_step_limit
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.plots.style import save
@@ -70,15 +71,15 @@ def remarks() -> list[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
     given = parser.parse_args()
     file = given.output / "pin_time_step.csv"
     if not given.redraw:
         with tempfile.TemporaryDirectory() as folder:
             study(Path(folder)).to_csv(file, index=False, float_format="%.5g")
-    save(time_step_limit(pd.read_csv(file), remarks()), given.output / "pin_time_step.png")
+    save(time_step_limit(read_table(file), remarks()), given.output / "pin_time_step.png")
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

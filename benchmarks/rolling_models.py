@@ -24,15 +24,13 @@ from typing import Any
 
 import pandas as pd
 
+from benchmarks.command_line import at_least_one, command, output_folder, read_table
 from benchmarks.plots.rolling_models import against_source
-from benchmarks.rolling_page import MODELS, NO_REST, PLATE, differences, results_page
-from benchmarks.runs import BY, at_least_one, side_by_side, simulated_by, with_earlier
-from bulkwear.postproc.flow.bulk_test import RESPONSES
-from bulkwear.postproc.inference.loop import packing_seed
+from benchmarks.rolling_case import FIDELITY, KINDS, MODELS, wanted
+from benchmarks.rolling_page import NO_REST, differences, results_page
+from benchmarks.runs import BY, side_by_side, simulated_by, with_earlier
 from bulkwear.postproc.plots.style import save, save_small
-from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, SHEAR_BOX, WALL_SHEAR, test_of
 from bulkwear.workflows.cases.calibration.case import pairs_file
-from bulkwear.workflows.cases.calibration.driver import FIRST_REPEAT, pair_of
 from bulkwear.workflows.cases.calibration.simulations import answer, flowing, is_answered
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine import state
@@ -41,67 +39,10 @@ from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.solver import SolverError
 from bulkwear.workflows.report.fillings import filling_columns
 
-# A slope under the constant torque of `cdt` creeps, the faster the larger the time step (docs/calibration.md).
-SETTINGS = {model: {"rolling_friction": model} for model in MODELS} | {
-    "cdt": {"rolling_friction": "cdt", "rayleigh_fraction": 0.1}
-}
-FIDELITY = "standard"  # the largest particles that the slot lets pass
 PACKINGS = 2
-KINDS, CALIBRATED = (SHEAR_BOX, DRAW_DOWN, WALL_SHEAR), "calibrated"  # the pair of Table 3.6
 RESTLESS = "did not come to rest"  # in the words of `bulk_simulations.check_rest`
 KEYS = ["packing", "pair", "test", "model"]  # of a row in the table of every simulation
 FILE, PAGE, FIGURE = "rolling_models.csv", "rolling_models_results.md", "rolling_models.png"
-
-
-def wanted(
-    packings: int, models: Sequence[str] = MODELS, kinds: Sequence[str] = KINDS, pairs: Sequence[str] = ()
-) -> list[dict[str, Any]]:
-    """Return what is to be simulated: model, test, pair, packing, frictions, of a wall shear test the plate's too;
-    `asked` is the test itself.
-
-    kinds: the tests; pairs: rows of the published table, all where none is named
-
-    In an order in which models stand beside one another early: a packing of all before the next, the calibrated pair in
-    all tests before the other pairs, a pair under all models before the next pair.
-    """
-    rows = []
-    studies = {
-        name: load_study("calibration", overrides={"fidelity": FIDELITY, "solver": dict(solver)})
-        for name, solver in SETTINGS.items()
-        if name in models
-    }
-    published = pd.read_csv(pairs_file(next(iter(studies.values()))))
-    asked = [
-        (packing, kind, pair)
-        for packing in range(packings)
-        for kind in kinds
-        for pair in pairs_of(published, kind)
-        if not pairs or pair in pairs
-    ]
-    asked.sort(key=lambda each: (each[0], each[2] != CALIBRATED))
-    for packing, kind, pair in asked:
-        for model, study in studies.items():
-            run = study.all_runs[0].parameters
-            names = [each["name"] for each in run["calibration"]["parameters"]]
-            seed = packing_seed(run["calibration"]["seed"], FIRST_REPEAT + packing)
-            values = pair_of(published, pair, names, run)
-            told = {name.rpartition(".")[2]: value for name, value in values.items()}
-            asked_test = test_of(run, kind, values, seed)
-            if kind == WALL_SHEAR:
-                told[PLATE] = asked_test["wall_material"]["contact"]["sliding_friction"]
-            rows.append(
-                {"model": model, "test": kind, "pair": pair, "packing": packing + 1, **told, "asked": asked_test}
-            )
-    return rows
-
-
-def pairs_of(published: pd.DataFrame, kind: str) -> list[str]:
-    """Return the pairs of which the source prints a response of a test, its calibrated one first; that one alone where
-    it prints none.
-    """
-    names = [name for name in RESPONSES[kind] if name in published]
-    found = published.loc[published[names].notna().any(axis=1), "row"]
-    return sorted(found, key=lambda pair: pair != CALIBRATED) or [CALIBRATED]
 
 
 def simulated(rows: Sequence[dict[str, Any]], folder: Path, cores: int, alone: bool = True) -> pd.DataFrame:
@@ -193,7 +134,7 @@ def publish(output: Path, runs: pd.DataFrame, published: pd.DataFrame) -> str:
 def parser_of(published: pd.DataFrame) -> argparse.ArgumentParser:
     """Return the command line, which knows the pairs of the published table by name."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument(
         "--packings", type=at_least_one, default=PACKINGS, help=f"of each pair, model and test, else {PACKINGS}"
     )
@@ -223,8 +164,8 @@ def main() -> None:
             parser.error(f"{none}; allowed are pairs of which the source prints a response of that test.")
         found = simulated(rows, given.folder, given.cores, alone=not given.finished)
         with_earlier(file, found, KEYS).sort_values(KEYS).to_csv(file, index=False, float_format="%.6g")
-    print(publish(given.output, pd.read_csv(file), published), flush=True)
+    print(publish(given.output, read_table(file, KEYS), published), flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -8,15 +8,14 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from benchmarks.rolling_case import MODELS, PLATE, study_of, time_steps_said
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, difference, estimate
 from bulkwear.workflows.cases.calibration.responses import response_name
 from bulkwear.workflows.report.fillings import MASS, NOTE, fillings_table
 from bulkwear.workflows.report.markdown import bullet, markdown, prose
 
-MODELS = ("cdt", "epsd2", "own_spin", "rvd")  # of docs/rolling_friction.md
 ALL_RESPONSES = tuple(name for responses in RESPONSES.values() for name in responses)
-PLATE = "plate_sliding_friction"  # column, the coefficient (-) of particles and plate of a wall shear test
 (WALL_ANGLE,) = RESPONSES["wall_shear"]  # of which the source prints nothing
 NO_REST = "no_rest"  # column with the words of a test that has no responses
 TWO = 2  # pairs, between which a response changes
@@ -191,17 +190,18 @@ def beside_the_source(found: pd.DataFrame, further: Sequence[str]) -> list[str]:
     shared = of_shared_pairs(found)
     table = summary(shared)
     responses = list(dict.fromkeys(table["response"]))
+    scale = study_of(MODELS[0]).settings["particle_scale"]
     trends = [sentence for response in responses for sentence in trend(shared, response)]
     parts = [
         "## Nearest to what the source simulated",
         "\n".join(map(bullet, (*(nearest(table, response) for response in responses), *trends, *further))),
         prose(
             "The source simulated these pairs of frictions itself (Yan 2022, Tables 3.3, 3.5 and 3.6), with a code of"
-            " whose rolling model it says no more than type A. The particles here are four times as large, and the"
-            " opening of the draw-down test is an assumption, a slot: the discharge time tells of that first. Compared"
-            " are the pairs that were simulated under every model of a response. Low and high: 95 % interval of the"
-            " mean difference over packings; told from the nearest: where the 95 % interval of the difference to that"
-            " model's mean does not hold 0. `cdt` has 0.1 of the Rayleigh time, the others 0.25."
+            f" whose rolling model it says no more than type A. The particles here are {scale:g} times as large, and"
+            " the opening of the draw-down test is an assumption, a slot: the discharge time tells of that first."
+            " Compared are the pairs that were simulated under every model of a response. Low and high: 95 % interval"
+            " of the mean difference over packings; told from the nearest: where the 95 % interval of the difference to"
+            f" that model's mean does not hold 0. {time_steps_said()}"
         ),
         markdown(table.assign(response=table["response"].map(response_name))),
         "![Ours over what the source simulated](rolling_models.png)",

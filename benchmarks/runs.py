@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
-import math
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -13,6 +11,7 @@ from typing import Any, TypeVar
 
 import pandas as pd
 
+from benchmarks.command_line import read_table
 from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, read_surface, write_surface
 from bulkwear.postproc.readers.solver_log import thermo_table
 from bulkwear.workflows.cases.sliding_sample.parameters import derived_parameters
@@ -37,32 +36,6 @@ DIGITS = 12  # of a hash, in the name of a folder
 BY = "simulated_by"  # column of a table of simulations: version of the code
 Asked, Answer = TypeVar("Asked"), TypeVar("Answer")
 FIRST_SEED = 20220317  # of sliding samples in the studies; further packings are SEED_SPACING apart, as theirs
-
-
-def at_least_one(text: str) -> int:
-    """Return a number of a command line, as of packings. Raises ArgumentTypeError where it is none from 1 on."""
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"found {text!r}, allowed is a whole number from 1 on")
-    return int(text)
-
-
-def number_within(low: float, high: float, kind: type = float) -> Callable[[str], float]:
-    """Return what reads a number from low to high of a command line. It raises ArgumentTypeError where it is none.
-
-    kind: int of whole numbers, else float
-    """
-
-    def number(text: str) -> float:
-        try:
-            found = kind(text)
-        except ValueError:
-            found = math.nan
-        if not low <= found <= high:
-            whole = "whole " if kind is int else ""
-            raise argparse.ArgumentTypeError(f"found {text!r}, allowed is a {whole}number from {low:g} to {high:g}")
-        return found
-
-    return number
 
 
 def changed(run: Run, change: Mapping[str, Any]) -> Run:
@@ -133,8 +106,8 @@ def with_earlier(file: Path, found: pd.DataFrame, keys: Sequence[str]) -> pd.Dat
     """
     if not file.is_file():
         return found
-    earlier = pd.read_csv(file)
-    return pd.concat([found, earlier], ignore_index=True).drop_duplicates(list(keys), keep="first", ignore_index=True)
+    both = pd.concat([found, read_table(file, keys)], ignore_index=True)
+    return both.drop_duplicates(list(keys), keep="first", ignore_index=True)
 
 
 def with_bed(chain: Chain, bed_name: str) -> Chain:

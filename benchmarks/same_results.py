@@ -17,6 +17,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import command
+
 TIMED = ("cost.csv", "solver_cost.csv", "forecast.csv", "ranks.csv")  # of tables that tell of the machine
 OF_MACHINE_OR_CODE = ("simulated_by", "solver_s", "processor_s", "other_s", "other_processor_s", "wall_s")
 SKIPPED_FOLDERS = ("logs", "decks", "superseded")
@@ -93,4 +95,4 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    command(main)

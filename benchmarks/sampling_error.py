@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import command, output_folder
 from benchmarks.runs import cycle_deck, prepared_chain
 from bulkwear.postproc.plots.curves import sampling_error
 from bulkwear.postproc.plots.style import save
@@ -105,7 +106,7 @@ def sampling_errors(
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/sampling_error"))
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     given = parser.parse_args()
     chain = with_whole_windows(prepared_chain(given.folder, PARTICLE_SCALE))
     folder, surface, _ = cycle_deck(chain, "every_step")
@@ -130,4 +131,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

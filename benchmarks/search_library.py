@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import command, output_folder, read_table
 from benchmarks.search_page import LIBRARY, OURS, SPREAD, page
 from benchmarks.search_truths import HALF, TRUTHS, Truth
 from bulkwear.postproc.inference.improvement import INTERVAL, Tried, best_of
@@ -182,19 +183,18 @@ def searches(
 def main() -> None:
     """Search, and write table and page."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--output", type=Path, default=Path("benchmark"))
+    parser.add_argument("--output", type=output_folder, default="benchmark")
     parser.add_argument("--library", type=Path)
     parser.add_argument("--redraw", action="store_true")
     given = parser.parse_args()
-    given.output.mkdir(parents=True, exist_ok=True)
     if not given.redraw:
         asked = load_study("optimised_pattern").optimise
         found = searches(given.library, TRUTHS, asked.first_rows, asked.rows_of_round, asked.most_rows, SEARCHES)
         found.to_csv(given.output / FILE, index=False)
     (given.output / PAGE).write_text(
-        page(pd.read_csv(given.output / FILE, keep_default_na=False), NOISE), encoding="utf-8"
+        page(read_table(given.output / FILE, keep_default_na=False), NOISE), encoding="utf-8"
     )
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

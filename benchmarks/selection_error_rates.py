@@ -13,13 +13,12 @@ import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import at_least_one, command, output_folder, read_table
 from benchmarks.page import markdown
-from benchmarks.runs import at_least_one
 from bulkwear.postproc.statistics.model_terms import Term, candidate_terms, term_columns
 from bulkwear.postproc.statistics.screening_design import coded_design
 from bulkwear.postproc.statistics.selection import Search, best_of_each
@@ -218,7 +217,7 @@ def told_by_design(table: pd.DataFrame) -> list[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument("--trials", type=at_least_one, default=TRIALS)
     parser.add_argument("--redraw", action="store_true", help="write the page from the table that is there")
     given = parser.parse_args()
@@ -229,8 +228,8 @@ def main() -> None:
             lines += rates_of(case, given.trials)
             print(case, flush=True)
         pd.DataFrame(lines).to_csv(file, index=False, float_format="%.4g")
-    file.with_suffix(".md").write_text(page(pd.read_csv(file)), encoding="utf-8")
+    file.with_suffix(".md").write_text(page(read_table(file)), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -21,6 +21,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import command
 from bulkwear.postproc.statistics.block_means import change_of_blocks, mean_of_blocks
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate, students_t
 from bulkwear.postproc.statistics.worst_place import worst_place
@@ -150,4 +151,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -22,7 +22,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from benchmarks import rolling_models
-from benchmarks.rolling_models import CALIBRATED, SHEAR_BOX
+from benchmarks.command_line import command
+from benchmarks.rolling_case import CALIBRATED, SHEAR_BOX
 from benchmarks.same_results import compare, tables
 from benchmarks.tilted_bed import REFERENCE
 from benchmarks.tilted_layer import CASE
@@ -201,4 +202,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    command(main)

@@ -23,12 +23,12 @@ from typing import NamedTuple
 import pandas as pd
 
 from benchmarks.changes import BEYOND, FAILED, WITHIN, changes
+from benchmarks.command_line import at_least_one, command, output_folder, read_table
 from benchmarks.plots.figures import Panel, deviation_figure
 from benchmarks.runs import (
     FIRST_SEED,
     PUBLISHED_PAIR,
     SMALL_BUMPS,
-    at_least_one,
     attempted,
     changed,
     failure_file,
@@ -276,7 +276,7 @@ def beyond(found: pd.DataFrame) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/stiffness"))
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument("--minutes", type=float, default=MINUTES, help="processor time of the solver at most")
     parser.add_argument("--packings", type=at_least_one, default=MOST_PACKINGS, help="at most")
     parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
@@ -285,10 +285,10 @@ def main() -> None:
     if not given.redraw:
         found = rows(given.folder, given.minutes, given.packings)
         pd.DataFrame(found).to_csv(file, index=False, float_format="%.6g")
-    table = pd.read_csv(file)
+    table = read_table(file)
     draw(table, file.with_suffix(".png"))
     file.with_suffix(".md").write_text(page(table))
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import command
 from benchmarks.impact_angle import OVER, TESTED
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.markdown import prose
@@ -112,4 +113,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -19,6 +19,7 @@ from typing import Any
 
 import pandas as pd
 
+from benchmarks.command_line import command
 from benchmarks.measure import Measure, measured
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
 from bulkwear.workflows.engine import state
@@ -168,4 +169,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -24,10 +24,11 @@ from typing import Any
 
 import pandas as pd
 
+from benchmarks.command_line import at_least_one, command, number_within, output_folder, read_table
 from benchmarks.plots.rolling_models import packings_by_model
-from benchmarks.rolling_models import CALIBRATED, SHEAR_BOX, wanted
-from benchmarks.rolling_page import MODELS, less
-from benchmarks.runs import BY, at_least_one, number_within, side_by_side, simulated_by, with_earlier
+from benchmarks.rolling_case import CALIBRATED, MODELS, SHEAR_BOX, wanted
+from benchmarks.rolling_page import less
+from benchmarks.runs import BY, side_by_side, simulated_by, with_earlier
 from benchmarks.tilted_layer import (
     CREEPING,
     FLOWING,
@@ -62,6 +63,7 @@ ALLOWED = {  # of each; faster than that few looks tell of creep
     "end_deg": (CREEPING, 90.0),
     "rate_deg_per_s": (0.1, 10.0),
 }
+ANSWERS = ["flow_angle_deg", "creep_mm_per_s"]  # columns of what is measured
 DIGITS = ".6g"  # of numbers in the table
 FILE, PAGE, FIGURE = "tilted_bed.csv", "tilted_bed_results.md", "tilted_bed.png"
 
@@ -239,7 +241,7 @@ def other_setting(file: Path, asked: Mapping[str, float]) -> str | None:
     """Return a sentence that says where the `SETTING` of an earlier table is not what is asked; None where it is."""
     if not file.is_file():
         return None
-    earlier = pd.read_csv(file)[SETTING].iloc[0]
+    earlier = read_table(file, [*KEYS, *SETTING], SETTING).iloc[0]
     found = {name: (f"{earlier[name]:{DIGITS}}", f"{asked[name]:{DIGITS}}") for name in SETTING}
     apart = [f"{name} {of_table}, not {other}" for name, (of_table, other) in found.items() if of_table != other]
     if not apart:
@@ -250,7 +252,7 @@ def other_setting(file: Path, asked: Mapping[str, float]) -> str | None:
 def parser_of(frictions: Mapping[str, float]) -> argparse.ArgumentParser:
     """Return the command line; frictions: the calibrated pair, by the names of `FRICTIONS`."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument("--packings", type=at_least_one, default=PACKINGS, help=f"of each model, else {PACKINGS}")
     parser.add_argument("--models", nargs="+", choices=MODELS, default=MODELS, help="else all")
     for name, allowed in ALLOWED.items():
@@ -277,7 +279,6 @@ def main() -> None:
             f" ({tilt.start_deg:g}) and above, between which creep is measured."
         )
     file = given.output / FILE
-    given.output.mkdir(parents=True, exist_ok=True)
     if not given.redraw:
         if other := other_setting(file, frictions | asdict(tilt)):
             parser.error(other)
@@ -287,12 +288,10 @@ def main() -> None:
             parser.error(f"{given.folder}: no layer asked for is finished; without --finished they are tilted.")
         found = all_tilted(rows, tilt, given.folder, given.cores, alone=not given.finished)
         with_earlier(file, found, KEYS).sort_values(KEYS).to_csv(file, index=False, float_format=f"%{DIGITS}")
-    elif not file.is_file():
-        parser.error(f"{file} is missing, allowed is --redraw where an earlier run has written it.")
-    if not means(runs := pd.read_csv(file)):
+    if not means(runs := read_table(file, [*KEYS, *SETTING], [*SETTING, *ANSWERS])):
         parser.error(f"{file}: no layer tells at which slope it flows: {' '.join(refused(runs))}")
     print(publish(given.output, runs), flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -24,18 +24,10 @@ from typing import Any
 
 import pandas as pd
 
+from benchmarks.command_line import at_least_one, command, output_folder, read_table
 from benchmarks.plots.time_step_limits import changes_by_model
-from benchmarks.rolling_page import MODELS
-from benchmarks.runs import (
-    FIRST_SEED,
-    at_least_one,
-    attempted,
-    changed,
-    failure_file,
-    is_simulated,
-    shared_chain,
-    simulated_run,
-)
+from benchmarks.rolling_case import MODELS
+from benchmarks.runs import FIRST_SEED, attempted, changed, failure_file, is_simulated, shared_chain, simulated_run
 from benchmarks.stiffness import (
     BED_THICKNESS,
     CASE,
@@ -202,7 +194,7 @@ def publish(output: Path, table: pd.DataFrame) -> str:
 def main() -> None:
     """Simulate what is missing, then write table, figure and page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/time_step_limits"))
     parser.add_argument("--models", nargs="+", choices=MODELS, default=list(MODELS), metavar="NAME")
     parser.add_argument("--surfaces", nargs="+", choices=SURFACES, default=list(SURFACES), metavar="NAME")
@@ -225,8 +217,8 @@ def main() -> None:
         if table.empty:
             parser.error(f"{given.folder}: no run is finished; without --finished they are simulated.")
         table.to_csv(given.output / FILE, index=False, float_format="%.6g")
-    print(publish(given.output, pd.read_csv(given.output / FILE)), flush=True)
+    print(publish(given.output, read_table(given.output / FILE)), flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -25,9 +25,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from benchmarks.command_line import at_least_one, command, output_folder, read_table
 from benchmarks.plots.figures import wear_side_by_side
 from benchmarks.ratios import ratio_intervals
-from benchmarks.runs import BY, at_least_one, is_simulated, simulated_by, with_earlier
+from benchmarks.runs import BY, is_simulated, simulated_by, with_earlier
 from benchmarks.window_case import (
     BEDS,
     BUMPS,
@@ -338,7 +339,7 @@ def tables_of(done: Sequence[tuple[Case, Chain]]) -> tuple[pd.DataFrame, pd.Data
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     parser.add_argument("--surface", choices=SURFACES, help="only this one; else both")
     parser.add_argument(
         "--packings", type=at_least_one, default=PACKINGS, help=f"of each bed, {PACKINGS} if it is not given"
@@ -354,10 +355,10 @@ def main() -> None:
     def write(runs: pd.DataFrame, blocks: pd.DataFrame) -> None:
         for file, table, key in zip(files, (runs, blocks), (keys, [*keys, "block"]), strict=True):
             with_earlier(file, table, key).to_csv(file, index=False, float_format="%.6g")
-        print(publish(given.output, *map(pd.read_csv, files)), flush=True)
+        print(publish(given.output, *(read_table(file, keys) for file in files)), flush=True)
 
     if given.redraw:
-        print(publish(given.output, *map(pd.read_csv, files)))
+        print(publish(given.output, *(read_table(file, keys) for file in files)))
         return
     surfaces = (given.surface,) if given.surface else SURFACES
     if given.finished:
@@ -370,4 +371,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.command_line import command
 from benchmarks.displacement import DOWN, SPACING, STEP, bumpy_sheet
 from benchmarks.remesh import CELLS, JITTER, distorted_sheet
 from bulkwear.meshes.pattern import ConvexPattern
@@ -132,4 +133,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

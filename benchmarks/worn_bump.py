@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from benchmarks.command_line import command, output_folder
 from bulkwear.postproc.plots.film import film_pictures, save_film
 from bulkwear.postproc.tables.depths import depth_quantity
 from bulkwear.postproc.tables.display import in_display_units
@@ -50,7 +51,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--results", type=Path, default=Path("results"))
     parser.add_argument("--fidelity", default="quick", help="at which the study was run")
-    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--output", type=output_folder, default="docs")
     given = parser.parse_args()
     folder = given.results / STUDY / RUN
     wear = pd.read_csv(folder / "wear.csv")
@@ -63,4 +64,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command(main)

@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 import pandas as pd
 from matplotlib.figure import Figure
 
-from benchmarks.rolling_page import MODELS, differences
+from benchmarks.rolling_case import MODELS
+from benchmarks.rolling_page import differences
 from bulkwear.postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, facets, label_all, new_figure
 from bulkwear.postproc.statistics.intervals import Estimate, estimate
 from bulkwear.workflows.cases.calibration.outcome import Calibrated

@@ -8,8 +8,8 @@ import pytest
 from benchmarks import calibration_models
 from benchmarks.calibration_models import FIGURE, FILE, PAGE, calibrated, main
 from benchmarks.calibration_models_page import MODEL, SHEAR_ANGLE, pairs_table, results_page, shares_table
-from benchmarks.rolling_models import SETTINGS
-from benchmarks.rolling_page import MODELS, NO_REST
+from benchmarks.rolling_case import MODELS, SETTINGS, study_of
+from benchmarks.rolling_page import NO_REST
 from bulkwear.workflows.cases.calibration import driver
 from bulkwear.workflows.engine.solver import SolverError
 from tests.support.calibration_study import answers
@@ -106,5 +106,7 @@ def test_models_that_were_not_asked_for_stay_in_the_table(formula, table, tmp_pa
 
 def test_the_models_time_steps_are_those_of_the_comparison():
     """`cdt` creeps the faster the longer its time step: it has a shorter one here, too."""
-    fractions = {model: calibration_models.study_of(model).settings["solver"]["rayleigh_fraction"] for model in MODELS}
+    fractions = {
+        model: study_of(model, calibration_models.FIDELITY).settings["solver"]["rayleigh_fraction"] for model in MODELS
+    }
     assert fractions["cdt"] == SETTINGS["cdt"]["rayleigh_fraction"] < min(fractions[name] for name in MODELS[1:])

@@ -8,21 +8,9 @@ import pandas as pd
 import pytest
 
 from benchmarks import rolling_models
-from benchmarks.rolling_models import (
-    CALIBRATED,
-    KINDS,
-    SETTINGS,
-    finished,
-    main,
-    pairs_of,
-    parser_of,
-    publish,
-    simulated,
-    wanted,
-)
+from benchmarks.rolling_case import CALIBRATED, KINDS, MODELS, PLATE, SETTINGS, pairs_of, wanted
+from benchmarks.rolling_models import finished, main, parser_of, publish, simulated
 from benchmarks.rolling_page import (
-    MODELS,
-    PLATE,
     by_pair,
     differences,
     nearest,

@@ -115,7 +115,9 @@ def test_of_bulk_tests_a_shear_box_is_asked_for(monkeypatch, tmp_path):
     (tmp_path / "before").mkdir()
     place = module.solved("before", sample, tmp_path)
     words = called[-1][list(called[-1]).index("benchmarks.rolling_models") + 1 :]
-    given = parser_of(pd.read_csv(pairs_file(load_study("calibration")))).parse_args(words)
+    published = pd.read_csv(pairs_file(load_study("calibration")))
+    monkeypatch.chdir(tmp_path)  # where the parser makes the folder of the output
+    given = parser_of(published).parse_args(words)
     assert (given.tests, given.pairs, given.packings) == (["shear_box"], ["calibrated"], 1)
     assert tmp_path / "before" / given.folder == tmp_path / "before" / given.output == place / sample.runs[0]
     assert (place / sample.runs[0]).is_dir()

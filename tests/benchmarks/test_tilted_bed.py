@@ -10,7 +10,8 @@ import pandas as pd
 import pytest
 
 from benchmarks import tilted_bed, tilted_layer
-from benchmarks.rolling_page import MODELS
+from benchmarks.command_line import command
+from benchmarks.rolling_case import MODELS
 from benchmarks.runs import side_by_side
 from benchmarks.tilted_bed import (
     FRICTIONS,
@@ -124,7 +125,7 @@ def test_what_cannot_be_asked_is_refused(given, said, tmp_path, monkeypatch, cap
     monkeypatch.setattr(sys, "argv", ["tilted_bed", *given, "--output", str(tmp_path), "--folder", str(tmp_path)])
     monkeypatch.setattr(tilted_bed, "all_tilted", None)
     with pytest.raises(SystemExit):
-        tilted_bed.main()
+        command(tilted_bed.main)
     assert said in capsys.readouterr().err
 
 

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from benchmarks.changes import BEYOND, UNDECIDED, WITHIN
-from benchmarks.rolling_page import MODELS
+from benchmarks.rolling_case import MODELS
 from benchmarks.runs import failure_file
 from benchmarks.stiffness import CONVEX, FRACTION
 from benchmarks.time_step_limits import (

@@ -6,7 +6,7 @@ import re
 import pandas as pd
 import yaml
 
-from benchmarks.rolling_page import MODELS
+from benchmarks.rolling_case import MODELS
 from benchmarks.scale_page import source_ratio
 from benchmarks.time_step_page import answers
 from bulkwear.workflows.engine.beds import (

@@ -20,7 +20,10 @@ def make_project(folder: Path) -> str:
     Raises ValueError unless the folder is new or empty, for a package whose path Snakemake would misread, and where
     nothing can be written.
     """
-    folder = folder.expanduser()
+    try:
+        folder = folder.expanduser()
+    except RuntimeError:  # pathlib's, for a user that the system does not know
+        raise ValueError(f"{folder}: {folder.parts[0]} is the home of nobody, allowed is another folder.") from None
     if any(brace in str(PACKAGE) for brace in "{}"):
         raise ValueError(f"{PACKAGE}: the package is in a folder with a brace in its name, allowed is one without.")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
