@@ -13,7 +13,7 @@ from bulkwear.postproc.inference.posterior import FAMILY_SHARE, interval
 from bulkwear.workflows.cases.calibration.figure_findings import reproduced
 from bulkwear.workflows.cases.calibration.outcome import Calibrated
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, shares_at
-from bulkwear.workflows.report.markdown import bullet, markdown, prose
+from bulkwear.workflows.report.markdown_text import bullet, markdown, prose
 from bulkwear.workflows.report.sentences import PERCENT, listed
 
 MODEL = "model"  # column of the table of simulations

@@ -34,7 +34,7 @@ from bulkwear.workflows.engine.accounting import LEDGER
 from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.inputs import inputs_digest
 from bulkwear.workflows.engine.project import PACKAGE, Project
-from bulkwear.workflows.report.markdown import markdown
+from bulkwear.workflows.report.markdown_text import markdown
 from tests.support.own_solids import all_facets, write_binary, write_bodies
 
 ROOT = Path(__file__).parents[1]

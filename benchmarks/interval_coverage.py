@@ -27,7 +27,7 @@ from bulkwear.postproc.statistics import intervals, verdicts
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate, difference, estimate
 from bulkwear.postproc.statistics.verdicts import AGREES, ALLOWED, CONTRADICTS, Claim, judged
 from bulkwear.workflows.config.claims import date_of_rules
-from bulkwear.workflows.report.markdown import markdown, prose
+from bulkwear.workflows.report.markdown_text import markdown, prose
 
 ROOT = Path(__file__).parents[1]
 TABLE, PAGE = ROOT / "docs" / "interval_coverage.csv", ROOT / "docs" / "interval_coverage.md"

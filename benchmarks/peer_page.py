@@ -11,7 +11,7 @@ import pandas as pd
 
 from benchmarks.measure import measured
 from benchmarks.peer_codes import OURS, Code
-from bulkwear.workflows.report.markdown import bullet, markdown, prose
+from bulkwear.workflows.report.markdown_text import bullet, markdown, prose
 
 QUANTITIES = ("kinetic_energy_J", "contacts", "force_x_N", "force_z_N")  # means over the samples of a run
 # -, of any quantity, beyond which two codes do not simulate the same. The path of a bed is chaotic: no other code can

@@ -13,7 +13,7 @@ from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, difference, estimate
 from bulkwear.workflows.cases.calibration.responses import response_name
 from bulkwear.workflows.report.fillings import MASS, NOTE, fillings_table
-from bulkwear.workflows.report.markdown import bullet, markdown, prose
+from bulkwear.workflows.report.markdown_text import bullet, markdown, prose
 
 ALL_RESPONSES = tuple(name for responses in RESPONSES.values() for name in responses)
 (WALL_ANGLE,) = RESPONSES["wall_shear"]  # of which the source prints nothing

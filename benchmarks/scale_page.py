@@ -18,7 +18,7 @@ from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.engine.derived import youngs_modulus
 from bulkwear.workflows.engine.project import PACKAGE
-from bulkwear.workflows.report.markdown import markdown, prose
+from bulkwear.workflows.report.markdown_text import markdown, prose
 
 FIGURE, CURVES = "critical_scale.png", "critical_scale_curves.png"
 LINES = Path("config/published/particle_size_lines.csv")

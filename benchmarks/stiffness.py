@@ -41,7 +41,7 @@ from bulkwear.postproc.plots.style import save
 from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine.chain import Chain
-from bulkwear.workflows.report.markdown import bullet, prose
+from bulkwear.workflows.report.markdown_text import bullet, prose
 
 STUDY, ROW = "demo", "R9"
 CONVEX = "convex"

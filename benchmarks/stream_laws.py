@@ -21,7 +21,7 @@ import pandas as pd
 from benchmarks.command_line import command
 from benchmarks.impact_angle import OVER, TESTED
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.report.markdown import prose
+from bulkwear.workflows.report.markdown_text import prose
 
 PAGE = Path("docs") / "wear.md"
 RESULTS = Path("results") / "which_law"

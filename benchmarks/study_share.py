@@ -33,7 +33,7 @@ from bulkwear.workflows.report.cost import (
     cost_totals,
     job_costs,
 )
-from bulkwear.workflows.report.markdown import markdown
+from bulkwear.workflows.report.markdown_text import markdown
 
 RESULTS = Path("results")
 SECONDS_PER_HOUR = 3600.0

@@ -48,7 +48,7 @@ from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, estimate
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.solver import SolverError, SolverStoppedError
-from bulkwear.workflows.report.markdown import bullet, markdown, prose
+from bulkwear.workflows.report.markdown_text import bullet, markdown, prose
 
 PACKINGS = 5
 REFERENCE = "own_spin"  # the studies' own: the others are compared with it

@@ -10,7 +10,7 @@ import pandas as pd
 
 from benchmarks.changes import BEYOND, FAILED, UNDECIDED, WITHIN, changes
 from benchmarks.stiffness import CASE, LIMIT, PERCENT, VELOCITY
-from bulkwear.workflows.report.markdown import bullet, markdown, prose
+from bulkwear.workflows.report.markdown_text import bullet, markdown, prose
 
 RESPONSES = {"sliding_work_J_per_m": "sliding work", "impact_energy_J_per_m": "impact energy"}  # that wear follows
 ENOUGH = 3  # packings of a model and surface before a limit is told

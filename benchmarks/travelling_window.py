@@ -56,7 +56,7 @@ from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.engine.solver import die_with
 from bulkwear.workflows.forecast.forecast import forecast_table, work_of
 from bulkwear.workflows.forecast.rates import DEFAULT, read_rates
-from bulkwear.workflows.report.markdown import bullet, markdown, prose
+from bulkwear.workflows.report.markdown_text import bullet, markdown, prose
 
 PLACE = "travelling_window"  # of the runs, in the folder of simulations of all benchmarks
 PACKINGS = 3

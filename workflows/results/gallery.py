@@ -9,7 +9,7 @@ from pathlib import Path
 import yaml
 
 from bulkwear.workflows.engine.project import PACKAGE
-from bulkwear.workflows.report.markdown import prose
+from bulkwear.workflows.report.markdown_text import prose
 from bulkwear.workflows.report.provenance_of_pages import END, Origin
 
 GALLERY = "gallery.md"

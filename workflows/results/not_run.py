@@ -13,7 +13,8 @@ from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.forecast.forecast import forecast_table, work_of
 from bulkwear.workflows.forecast.rates import DEFAULT, read_rates
 from bulkwear.workflows.forecast.shipped import CORES, cost
-from bulkwear.workflows.report.markdown import config_words, markdown
+from bulkwear.workflows.report.markdown import config_words
+from bulkwear.workflows.report.markdown_text import markdown
 
 
 @dataclass(frozen=True)

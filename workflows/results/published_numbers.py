@@ -13,7 +13,7 @@ from bulkwear.postproc.statistics.verdicts import CONTRADICTS, OTHER_SIZE, VERDI
 from bulkwear.workflows.config.claims import ABOUT, date_of_rules
 from bulkwear.workflows.config.layers import ConfigError, read_yaml
 from bulkwear.workflows.engine.project import current_project
-from bulkwear.workflows.report.markdown import markdown
+from bulkwear.workflows.report.markdown_text import markdown
 from bulkwear.workflows.report.provenance_of_pages import LINE, Origin
 from bulkwear.workflows.report.published import FOLDER, GIVEN, published_file
 from bulkwear.workflows.results.not_compared import (

@@ -14,7 +14,7 @@ from bulkwear.workflows.config.chosen import ROWS
 from bulkwear.workflows.config.design import Study, list_studies, load_study
 from bulkwear.workflows.config.packings import PACKINGS
 from bulkwear.workflows.forecast.shipped import FIDELITIES
-from bulkwear.workflows.report.markdown import markdown
+from bulkwear.workflows.report.markdown_text import markdown
 from bulkwear.workflows.report.provenance_of_pages import LINE, Origin
 from bulkwear.workflows.report.text import number, range_text
 

@@ -7,18 +7,16 @@ import pytest
 
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.markdown import (
-    Caption,
     config_words,
     durations,
     fidelity_that_was_run,
-    markdown,
     pictures_of,
     provenance,
     setting_of,
     study_that_was_run,
     write_results,
-    written,
 )
+from bulkwear.workflows.report.markdown_text import Caption, markdown, written
 from bulkwear.workflows.report.page_parameters import page_parameters
 from bulkwear.workflows.report.products import figures_of
 from bulkwear.workflows.report.sections import Pictures, Section, Text

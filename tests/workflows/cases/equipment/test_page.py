@@ -13,7 +13,7 @@ from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.workflows.cases.equipment import heads, page, page_blocks
 from bulkwear.workflows.cases.equipment.machine_tables import laws_of_parts, parts_table
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.report.markdown import written
+from bulkwear.workflows.report.markdown_text import written
 from bulkwear.workflows.report.page import write_page
 from bulkwear.workflows.report.page_parameters import page_parameters
 from bulkwear.workflows.report.products import (

@@ -7,7 +7,7 @@ import pytest
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.pin_on_disc import page
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.report.markdown import written
+from bulkwear.workflows.report.markdown_text import written
 from bulkwear.workflows.report.page import write_page
 from bulkwear.workflows.report.page_parameters import page_parameters
 from bulkwear.workflows.report.predictions import error_of, prediction_note, prediction_table

@@ -7,7 +7,8 @@ import pytest
 
 from bulkwear.workflows.cases.sliding_sample.particle_size.page import sections, told
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.report.markdown import durations, provenance, written
+from bulkwear.workflows.report.markdown import durations, provenance
+from bulkwear.workflows.report.markdown_text import written
 from bulkwear.workflows.report.page import environment
 from bulkwear.workflows.report.page_parameters import answers_of_study, page_parameters
 from bulkwear.workflows.report.products import products_of_study

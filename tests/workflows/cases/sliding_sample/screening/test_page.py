@@ -12,7 +12,8 @@ from bulkwear.workflows.cases.sliding_sample.screening import page as screening
 from bulkwear.workflows.cases.sliding_sample.screening.regression_sensitivity import sensitivity_table
 from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import regression_tables, screen_summary
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.report import markdown
+from bulkwear.workflows.report import markdown as page_in_markdown
+from bulkwear.workflows.report.markdown_text import markdown
 from bulkwear.workflows.report.page_parameters import page_parameters
 from bulkwear.workflows.report.products import products_of_study
 from bulkwear.workflows.report.sections import Pictures
@@ -63,7 +64,7 @@ def folder(few, tmp_path):
 
 def test_a_row_stands_beside_its_plain_twin(few, folder):
     """Ratios of the two surfaces with their interval, wear in mm3 per metre, and the regime over the convex one."""
-    lines = markdown.markdown(screening.wear_by_row(page_parameters(few), folder)).splitlines()
+    lines = markdown(screening.wear_by_row(page_parameters(few), folder)).splitlines()
     assert lines[0].startswith(
         "| row | particle scale | regime | flow steady | packings | wear over plain | interval low"
     )
@@ -80,7 +81,7 @@ def test_a_few_rows_make_a_page_without_a_regression(few, tmp_path):
     write_findings(folder)
     for path in (folder / "figures").glob("*.png"):
         Image.new("RGB", (2, 2)).save(path)
-    text = markdown.write_results(folder, docs, few).read_text(encoding="utf-8")
+    text = page_in_markdown.write_results(folder, docs, few).read_text(encoding="utf-8")
     assert text.startswith("# Screening of the convex pattern, Table 3.8: results at quick fidelity")
     assert "12 runs of" in " ".join(text.split()) and "## Durations" in text
     assert "Of 1 claims: 1 cannot be said." in " ".join(text.split()) and "| R12 wears more |" in text
