@@ -6,8 +6,13 @@
 
 Snakemake finds profiles/default by itself, the choices for one machine; docs/cluster.md has those for a cluster."""
 
+from bulkwear.workflows.config.targets import default_studies
+
 
 include: "workflows/common.smk"
+include: "workflows/start_and_end.smk"
+include: "workflows/inputs.smk"
+include: "workflows/jobs.smk"
 include: "workflows/forecast/rules.smk"
 include: "workflows/engine/rules.smk"
 include: "workflows/report/rules.smk"

@@ -182,7 +182,7 @@ def test_ranks_start_inside_a_job(cluster, tmp_path, within):
 @pytest.mark.verify  # waits for a minute
 def test_an_allocation_is_no_submission(cluster, tmp_path):
     """Snakemake called within salloc keeps to its cores; the job that it submits has its tasks."""
-    rules = (REPOSITORY / "workflows/common.smk").read_text()
+    rules = (REPOSITORY / "workflows/jobs.smk").read_text()
     told = next(part for part in rules.split("\n\n\n") if part.startswith("def submitted("))
     (tmp_path / "Snakefile").write_text(f"from pathlib import Path\n{RANKS_TOLD % told}")
     words = [sys.executable, "-m", "snakemake", "--cores", "1"]

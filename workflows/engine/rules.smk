@@ -1,5 +1,7 @@
 """Surfaces, beds and runs: everything up to what calls the solver, and the same decks without calling it."""
 
+from dataclasses import asdict  # Snakemake does not see that an object of a class of ours has changed
+
 
 rule surface_mesh:
     output:

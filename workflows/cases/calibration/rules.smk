@@ -2,6 +2,10 @@
 
 from bulkwear.workflows.cases.calibration.case import calibration_box, pairs_file
 from bulkwear.workflows.engine.inputs import SimulatedFrom
+from bulkwear.workflows.engine.templates import templates_digest
+
+
+include: "inputs.smk"
 
 
 rule calibrated_parameters:

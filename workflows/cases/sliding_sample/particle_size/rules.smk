@@ -2,6 +2,10 @@
 
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import packed_runs
 from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.engine.templates import templates_digest
+
+
+include: "inputs.smk"
 
 
 rule packing_profiles:

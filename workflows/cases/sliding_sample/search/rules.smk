@@ -1,5 +1,7 @@
 """Rounds of a search: the patterns of the next one follow from the results of all before."""
 
+from dataclasses import asdict  # Snakemake does not see that an object of a class of ours has changed
+
 
 checkpoint proposed_rows:
     input:
