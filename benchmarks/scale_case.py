@@ -75,7 +75,15 @@ CANDIDATES: dict[str, Candidate] = {
             "solver": {"rolling_friction": "rvd", "rayleigh_fraction": 0.1},
         },
         NUMERICAL,
-        "both, with 0.1 of the Rayleigh time instead of 0.4, which is shown for `own_spin` alone",
+        "both, with 0.1 of the Rayleigh time instead of 0.4, as long a step as is [shown](time_step_limits_results.md)",
+    ),
+    "one size, rolling on relative spin, time step 0.1": Candidate(
+        {
+            "particle": {SIZES: [1.0], "mass_fractions": [1.0]},
+            "solver": {"rolling_friction": "cdt", "rayleigh_fraction": 0.1},
+        },
+        NUMERICAL,
+        "both, with 0.1 of the Rayleigh time instead of 0.4, as long a step as is shown: the torque of `cdt` knows it",
     ),
     "sizes 0.5 to 1.5": Candidate(
         {"particle": {SIZES: [0.5, 0.75, 1.0, 1.25, 1.5], "mass_fractions": [0.1, 0.2, 0.4, 0.2, 0.1]}},
