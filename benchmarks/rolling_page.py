@@ -106,7 +106,8 @@ def nearest(table: pd.DataFrame, response: str) -> str:
     if rows["low"].isna().all() or math.isinf(rows["high"].max()):
         said = UNKNOWN
     elif len(holding):
-        said = f"the interval of the mean difference holds 0 for {', '.join(holding['model'])}"
+        cancel = ", in which pairs may cancel," if best["pairs"] > 1 else ""
+        said = f"the interval of the mean difference{cancel} holds 0 for {', '.join(holding['model'])}"
     else:
         said = "no interval of a mean difference holds 0"
     alike = rows.loc[rows["told_from_nearest"] == ALIKE, "model"]

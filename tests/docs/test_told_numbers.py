@@ -204,6 +204,9 @@ def test_which_rolling_model_is_nearest_and_when_a_layer_flows():
     assert (
         set(apart[apart == "yes"].index) == set(off.index[-2:]) and "tell the last two from it, but not `cdt`" in page
     )
+    pairs = rows(results, "pair", "published", "cdt").set_index("pair").astype(float)
+    misses = (pairs["own spin"] - pairs["published"]).loc[["calibrated", "size-test"]]
+    assert "as those of `own_spin` do ({:+.1f} and {:+.1f})".format(*misses) in page and misses.prod() < 0.0
     off_by = found["mean difference"].astype(float)
     heap = ("Shear angle, draw-down (°)", "Angle of repose (°)", "Discharge time (s)")
     rvd, own_spin, epsd2 = ([off_by[response, model] for response in heap] for model in ("rvd", "own spin", "epsd2"))
@@ -386,6 +389,11 @@ def test_what_decisions_say_of_softness_and_time_steps():
     ]
     assert f"it adds {said[0]} of sliding work and {said[1]} of impact energy under `own_spin`, in 60 packings" in page
     assert change["own_spin", "convex", work]["runs"] == 60
+    of_cdt = [
+        "{:.1f} % ({:.1f} to {:.1f})".format(*(100.0 * change["cdt", surface, work][ends]))
+        for surface in ("plain", "convex")
+    ]
+    assert "on a plain sample by {}, on a convex one by {}, three".format(*of_cdt) in told("grain_shape.md")
     for other in ("rolling_friction.md", "particle_size.md"):
         assert f"on a plain sample by less than 2 % and adds {said[0]} on a convex one" in told(other)
     plain = [change[model, "plain", work] for model in MODELS]

@@ -119,8 +119,13 @@ def test_what_settings_of_the_tester_reach():
         and 1.5 < layer["rvd"] / layer["rolling"] < 2.5
     )
     together = volume["friction-rolling-bed"]
-    assert f"together ({together:.1f}, in a bed of 190 mm): either" in page
-    assert f"changed first, {volume['rolling']:.1f} and {volume['friction']:.1f}." in page
+    source = 73.6  # mm3 per revolution, the least that is published
+    left = [f"{source / volume[name]:.1f}" for name in ("reference", "rolling")]
+    assert f"({volume['reference']:.1f}, three packings). {left[0]} is left under `cdt`, {left[1]}" in page
+    assert f"under `own_spin` ({volume['rolling']:.1f}; the page" in page
+    assert f"leaves {source / together:.1f} ({together:.1f}); either" in page
+    firsts = volume[["rolling", "friction"]] / volume["reference"]
+    assert f"alone takes {firsts.mean():.1f} ({volume['friction']:.1f} by friction), one" in page
     assert f"It loses {volume[smooth]:.0f} mm³ a revolution, its convex sample {ratio[smooth]:.2f} of the plain" in page
 
 
@@ -139,7 +144,11 @@ def test_what_moves_the_volume_of_the_tester():
     assert f"{interval(*thin).replace(' (', ' times (')} on the convex one." in page
     of_bumps = (bumps.loc[change.name] for change in (friction, rolling))
     convex = " and ".join("{:.1f} ({:.1f} to {:.1f})".format(*each) for each in of_bumps)
-    assert f"on the plain sample, {convex} on the convex one, by sliding over travel." in page
+    assert f"on the plain sample, {convex} on the convex one, by sliding over travel: means" in page
+    alone = reached()[0][["Volume per revolution, plain", "Volume per revolution, convex, at first"]]
+    plain, pattern = (alone.loc[["friction", "rolling"]] / alone.loc["reference"]).T.to_numpy()
+    words = "{:.2f} and {:.2f} times on the plain sample, {:.2f} and {:.2f} on the convex one. The".format
+    assert words(*plain, *pattern) in page
     told_apart = lines[(lines["low"] > 1.0) | (lines["high"] < 1.0)].index
     assert set(told_apart) == {friction.name, rolling.name, "rolling model rvd", other_end.name}
     assert f"{interval(*friction)} and {interval(*rolling).replace(' (', ' times (')} on the plain sample" in page
