@@ -100,6 +100,15 @@ def test_the_critical_scale_and_what_bumps_do_to_a_bed():
     assert f"under a force that grows by {100.0 * (force[-1] / force[0] - 1.0):.0f} %" in page
     forms = rows("particle_size_results_standard.md", "form", "crossing")
     assert (forms["rejected"] == "no").sum() == 1 and "which leaves one form of its curve" in page
+    next_best = forms[forms["rejected"] == "yes"].set_index("form").astype({"p value": float})["p value"]
+    crossing = forms.set_index("form").loc[next_best.idxmax(), ["crossing", "interval low", "interval high"]]
+    words = "a parabola of the ratio, {:.1f} ({:.1f} to {:.1f}), is only just rejected".format(*map(float, crossing))
+    assert next_best.idxmax() == "ratio, parabola" and f"{words} (p = {next_best.max():.2f})" in page
+    windows = [
+        re.search(r"(\d+ of \d+) windows are steady", told(f"particle_size_results_{each}.md"))[1]
+        for each in ("quick", "standard")
+    ]
+    assert "criterion {} of its windows are steady at quick and {} at standard".format(*windows) in page
 
 
 def test_how_loose_coarse_beds_lie():
