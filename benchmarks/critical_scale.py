@@ -67,16 +67,14 @@ PERCENT = 100.0
 # ---------------------------------------------------------------- runs
 
 
-def filled(case: Case, folder: Path, settings: dict[str, Any]) -> None:
+def filled(chain: Chain) -> None:
     """Fill the bed of a run unless it is there."""
-    chain = chain_of(case, folder, settings)
-    kept(chain, lambda: with_bed(chain, case.candidate))
+    kept(chain, lambda: with_bed(chain, chain.name))
 
 
-def simulated(case: Case, folder: Path, settings: dict[str, Any]) -> None:
+def simulated(chain: Chain) -> None:
     """Simulate a run from where it stopped, unless it is finished or failed before."""
-    chain = chain_of(case, folder, settings)
-    kept(chain, lambda: simulated_run(chain, case.candidate))
+    kept(chain, lambda: simulated_run(chain, chain.name))
 
 
 def kept(chain: Chain, task: Callable[[], object]) -> None:
@@ -88,22 +86,21 @@ def kept(chain: Chain, task: Callable[[], object]) -> None:
         print(f"{chain.name} failed: {failed.read_text(encoding='utf-8')}", flush=True)
 
 
-def simulate_all(wanted: Sequence[Case], folder: Path, cores: int, each: Callable[[], object]) -> None:
+def simulate_all(chains: Sequence[Chain], cores: int, each: Callable[[], object]) -> None:
     """Fill all beds, then simulate all runs, as many side by side as there are cores; call `each` after every run."""
-    chains = {case: chain_of(case, folder, SETTINGS) for case in wanted}
-    beds, runs = ({getattr(chain, name): case for case, chain in chains.items()} for name in ("bed_restart", "folder"))
+    beds, runs = ({getattr(chain, name): chain for chain in chains} for name in ("bed_restart", "folder"))
     with ProcessPoolExecutor(cores, initializer=die_with(os.getpid())) as pool:
-        list(pool.map(partial(filled, folder=folder, settings=SETTINGS), beds.values()))
-        for _ in pool.map(partial(simulated, folder=folder, settings=SETTINGS), runs.values()):
+        list(pool.map(filled, beds.values()))
+        for _ in pool.map(simulated, runs.values()):
             each()
 
 
-def said_beforehand(wanted: Sequence[Case], folder: Path) -> str:
+def said_beforehand(chains: Sequence[Chain]) -> str:
     """Return in a phrase how much there is to simulate, and about how long a core takes for it."""
-    chains = {chain.folder: chain for chain in (chain_of(case, folder, SETTINGS) for case in wanted)}
-    steps = sum(map(particle_steps, chains.values()))
+    runs = {chain.folder: chain for chain in chains}
+    steps = sum(map(particle_steps, runs.values()))
     minutes = steps / PARTICLE_STEPS_PER_SECOND / 60.0
-    return f"{len(chains)} runs: {steps:.2g} particle-steps, some {minutes:.0f} minutes of a core without triangles"
+    return f"{len(runs)} runs: {steps:.2g} particle-steps, some {minutes:.0f} minutes of a core without triangles"
 
 
 # ---------------------------------------------------------------- what came out
@@ -291,9 +288,9 @@ def main() -> None:
                 f" {REFERENCE!r}, allowed is with it, or where {file} has it"
             )
         if not given.finished:
-            print(said_beforehand(wanted, given.folder), flush=True)
-            write = partial(write_table, file, wanted, given.folder)
-            simulate_all(wanted, given.folder, given.cores, write)
+            chains = [chain_of(case, given.folder, SETTINGS) for case in wanted]
+            print(said_beforehand(chains), flush=True)
+            simulate_all(chains, given.cores, partial(write_table, file, wanted, given.folder))
         write_table(file, wanted, given.folder)
         if not file.is_file():
             parser.error(f"{given.folder}: no run is finished; without --finished they are simulated.")

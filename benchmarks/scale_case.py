@@ -8,11 +8,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from benchmarks.runs import FIRST_SEED, PUBLISHED_PAIR, changed, surface_file
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.workflows.config.design import Run, load_study
+from bulkwear.workflows.config.layers import merge
 from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.chain import Chain, total_steps
@@ -185,16 +187,18 @@ def cases(scales: Iterable[int], names: Iterable[str], packings: int, of_referen
     ]
 
 
-def chain_of(case: Case, folder: Path, settings: Mapping[str, Any]) -> Chain:
-    """Return a run as the driver sees it, its folder made.
+def chain_of(
+    case: Case, folder: Path, settings: Mapping[str, Any], further: Mapping[str, Any] = MappingProxyType({})
+) -> Chain:
+    """Return a run as the driver sees it, its folder made; further: what is changed beside its candidate.
 
     Runs whose beds have equal parameters share one, so both surfaces of a packing, and all candidates that leave the
     bed as it is, start from the same particles.
     """
     row = f"S{case.scale}"
     study = load_study(STUDY, overrides={**settings, "rows": [row], "packings": 1})
-    candidate = CANDIDATES[case.candidate]
-    runs = [with_change(run, candidate.change, case.seed) for run in study.runs]
+    change = merge(dict(CANDIDATES[case.candidate].change), further)
+    runs = [with_change(run, change, case.seed) for run in study.runs]
     beds, bed_of = study.case.beds(runs)
     (run,) = (run for run in runs if run.surface == case.surface)
     bed, place = beds[bed_of[run.name]], folder / case.folder

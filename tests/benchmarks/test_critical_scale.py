@@ -216,14 +216,15 @@ def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
     """Tiny runs, both surfaces; what is finished is not simulated again, and a failure stops nothing else."""
     monkeypatch.setattr(critical_scale, "SETTINGS", TINY)
     wanted = [Case(REFERENCE, surface, 6, FIRST_SEED) for surface in scale_case.SURFACES]
-    assert "2 runs" in critical_scale.said_beforehand(wanted, tmp_path)
-    simulate_all(wanted, tmp_path, 1, lambda: None)
+    chains = [chain_of(case, tmp_path, TINY) for case in wanted]
+    assert "2 runs" in critical_scale.said_beforehand(chains)
+    simulate_all(chains, 1, lambda: None)
     found = finished([*wanted, replace(wanted[0], seed=1)], tmp_path)
     assert list(found["surface"]) == ["plain", "convex"]
     assert (found["wear_mm3_per_m"] > 0.0).all() and found["slip_percent"].between(1.0, 150.0).all()
     assert list(found["bumps_mm3_per_m"] > 0.0) == [False, True]
     monkeypatch.setattr("benchmarks.runs.run_chain", lambda chain: pytest.fail("was done before"))
-    simulate_all(wanted, tmp_path, 1, lambda: None)
+    simulate_all(chains, 1, lambda: None)
     broken = chain_of(replace(wanted[0], seed=1), tmp_path, TINY)
     critical_scale.kept(broken, lambda: (_ for _ in ()).throw(ValueError("no bed")))
     assert failure_file(broken).read_text() == "no bed"
