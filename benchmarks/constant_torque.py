@@ -24,7 +24,7 @@ import pandas as pd
 from benchmarks.command_line import at_least_one, command, number_within, output_folder
 from benchmarks.critical_scale import MM3, said_beforehand, simulate_all
 from benchmarks.runs import BY, FIRST_SEED, is_simulated, simulated_by, with_earlier
-from benchmarks.scale_case import SETTINGS, SURFACES, Case, chain_of
+from benchmarks.scale_case import FRACTION_DIGITS, SETTINGS, SOURCE_STEP, SURFACES, Case, chain_of
 from bulkwear.postproc.tables.summary import run_summary
 from bulkwear.workflows.engine import solver, state
 from bulkwear.workflows.engine.chain import Chain
@@ -33,9 +33,7 @@ from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.engine.provenance import PROVENANCE
 
 CANDIDATE = "one size, rolling as rvd"
-SOURCE_STEP = 5e-6  # s, of the source's bulk tests, the one step that it prints
 FRACTIONS = {4: (0.4, 0.23), 6: (0.4, 0.23, 0.1), 8: (0.23,)}  # by scale, beside SOURCE_STEP: of the Rayleigh time
-DIGITS = ".4g"  # of a fraction, as settings have it
 PROGRAM, CHANGED, FUNCTION = "constant_torque.cpp", "rolling/fix_turning_friction.cpp", "void FixTurningFriction::act()"
 COMPILED, HASH_DIGITS = {".cpp", ".h"}, 12  # files of the solver; of a hash of them, in the name of a folder
 FILE, KEYS = "constant_torque.csv", ["particle_scale", "rayleigh_fraction", "surface", "seed"]
@@ -72,7 +70,7 @@ def fractions_of(scale: int, folder: Path) -> list[float]:
     """Return the time steps of a scale over the Rayleigh time (-): FRACTIONS, and what SOURCE_STEP is of it."""
     chain = chain_of(Case(CANDIDATE, SURFACES[0], scale, FIRST_SEED), folder, SETTINGS)
     of_source = SOURCE_STEP / chain.parameters["derived"]["rayleigh_time_s"]
-    return [*FRACTIONS[scale], float(f"{of_source:{DIGITS}}")]
+    return [*FRACTIONS[scale], float(f"{of_source:{FRACTION_DIGITS}}")]
 
 
 def asked_for(
@@ -81,7 +79,7 @@ def asked_for(
     """Yield the runs that are asked for, with their fractions of the Rayleigh time; fractions: None where all are."""
     for scale in scales:
         for fraction in fractions or fractions_of(scale, folder):
-            place = folder / f"fraction_{fraction:{DIGITS}}"
+            place = folder / f"fraction_{fraction:{FRACTION_DIGITS}}"
             for surface in SURFACES:
                 case = Case(CANDIDATE, surface, scale, FIRST_SEED)
                 yield case, fraction, chain_of(case, place, SETTINGS, {"solver": {"rayleigh_fraction": fraction}})

@@ -25,7 +25,9 @@ SETTINGS: dict[str, Any] = {"fidelity": "quick", "bed": {"material": PUBLISHED_P
 REFERENCE = "the study with the source's pair"
 FOLDER_OF_REFERENCE = "as_in_the_study"  # of its runs
 OPEN, PUBLISHED, NUMERICAL = "open", "published", "ours"  # what the source says of a thing
-SIZES = "relative_diameters"  # key of a change; over the median
+SIZES, TIME_STEP = "relative_diameters", "time_step_s"  # keys of a change: over the median; at most, at this scale
+SOURCE_STEP = 5e-6  # s, of the source's bulk tests, the one step that it prints
+FRACTION_DIGITS = ".4g"  # of a time step over the Rayleigh time
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,15 @@ CANDIDATES: dict[str, Candidate] = {
         },
         NUMERICAL,
         "both, with 0.1 of the Rayleigh time instead of 0.4, as long a step as is shown: the torque of `cdt` knows it",
+    ),
+    "one size, rolling on relative spin, time step 5e-6 s": Candidate(
+        {
+            "particle": {SIZES: [1.0], "mass_fractions": [1.0]},
+            "solver": {"rolling_friction": "cdt", TIME_STEP: SOURCE_STEP},
+        },
+        OPEN,
+        "both, with the step that the source prints of its bulk tests, 0.05 of the Rayleigh time at scale 4, 0.02 at"
+        " 8: which one its sliding samples had is not said",
     ),
     "sizes 0.5 to 1.5": Candidate(
         {"particle": {SIZES: [0.5, 0.75, 1.0, 1.25, 1.5], "mass_fractions": [0.1, 0.2, 0.4, 0.2, 0.1]}},
@@ -216,11 +227,17 @@ def chain_of(
 
 def with_change(run: Run, change: Mapping[str, Any], seed: int) -> Run:
     """Return the run with a candidate's change and the seed of a packing."""
-    particle = dict(change.get("particle", {}))
+    particle, solver = (dict(change.get(section, {})) for section in ("particle", "solver"))
     if SIZES in particle:
         median = run.parameters["particle"]["median_diameter_m"]
         particle["diameters_m"] = [median * size for size in particle.pop(SIZES)]
-    return changed(run, {**change, "particle": particle, "bed": {**change.get("bed", {}), "seed": seed}})
+    step = solver.pop(TIME_STEP, None)
+    bed = {**change.get("bed", {}), "seed": seed}
+    found = changed(run, {**change, "particle": particle, "solver": solver, "bed": bed})
+    if step is None:
+        return found
+    fraction = step / found.parameters["derived"]["rayleigh_time_s"]
+    return changed(found, {"solver": {"rayleigh_fraction": float(f"{fraction:{FRACTION_DIGITS}}")}})
 
 
 def particle_steps(chain: Chain) -> float:
