@@ -116,7 +116,7 @@ def findings(study: Mapping[str, Any], folder: Path) -> list[Section]:
     asked = (
         "Each finding of Yan 2022, chapter 3, as a claim with its margin (config/published/verdicts.yaml, of "
         f"{date_of_rules('screening')}, which tells what came after runs), against the runs of this page"
-        f"{', at the reduced scale told at its top' if study['remarks'] else ''}. Of {len(verdicts)} claims: {counts}."
+        f"{', at the sizes told at its top' if study['remarks'] else ''}. Of {len(verdicts)} claims: {counts}."
     )
     note = (
         "Agrees: inside the margin, or on the claimed side, at an error rate of 5 %; contradicts: on the other side, "
