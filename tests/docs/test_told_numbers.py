@@ -18,6 +18,7 @@ from bulkwear.workflows.engine.beds import (
     level_measure,
     over_asked_density,
 )
+from bulkwear.workflows.report.provenance_of_pages import read_origins
 from bulkwear.workflows.report.time_step import SHOWN
 from tests import PUBLISHED, REPOSITORY
 from tests.support.told import rows, table, told
@@ -437,6 +438,23 @@ def test_what_a_travelling_window_changes():
         "so {:.0f} times cheaper than the source's set-up with a plain sample (95 %: {:.1f} to".format(*plain) in page
     )
     assert "and {:.0f} times with a convex one ({:.1f} to {:.1f})".format(*convex) in page
+
+
+def test_what_the_row_at_true_size_wears():
+    """R12 over its plain twin, force, layers and bumps, beside the page at quick."""
+    page, key = told("screening.md"), ["setting", "surface"]
+    found = rows("screening_results_paper.md", "setting", "surface", "packings").set_index(key)
+    convex, plain = (found.loc[("R12", surface)] for surface in ("convex", "plain"))
+    assert f"R12 at true size** wears {float(convex['wear over plain']):.2f} of its plain twin" in page
+    assert f"the plain sample with {float(plain['mean normal force N']):.1f} N; their" in page
+    assert f"Bumps take {float(convex['pattern share percent']):.0f} % of the wear" in page
+    bed = rows("screening_results_paper.md", "bed", "settings", "packing", "particle scale").iloc[0]
+    assert float(bed["particle scale"]) == 1.0
+    quick = rows("screening_results_quick.md", "row", "particle scale", "regime").set_index("row").loc["R12"]
+    words = "at scale {:.2f}, has {:.2f}.".format(*quick[["particle scale", "wear over plain"]].astype(float))
+    assert words in page
+    (origin,) = [each for each in read_origins(REPOSITORY / "docs") if each.page == "screening_results_paper.md"]
+    assert f"has taken {origin.core_hours:.1f}:" in page
 
 
 def test_what_sampling_costs():

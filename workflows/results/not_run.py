@@ -39,7 +39,8 @@ NOT_RUN = (
         {"fidelity": "quick"},
     ),
     NotRun(
-        "screening: two rows at the source's own particle size, in a window instead of its bed of 2 m",
+        "screening: two rows at the source's own particle size over its travel and by its time step, in a window"
+        " instead of its bed of 2 m",
         "screening",
         {"fidelity": "paper", "packings": 1, "rows": ["R5", "R12"], "bed": WINDOW},
     ),
