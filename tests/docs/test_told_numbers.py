@@ -347,9 +347,24 @@ def test_why_the_critical_scale_differs():
     assert where["one size of particles"].startswith("below 4, if anywhere") and (alone > 1.0).all()
     assert where["one size, rolling as rvd"].startswith("below 3, if anywhere") and "is below 3, if it has one." in page
     for_study = where["the study with the source's pair"].removesuffix(" to beyond 8")
-    assert f"none or one below 4, where the study has {float(for_study):.1f} or beyond;" in page
+    assert f"none or one below 4, where the study has {float(for_study):.1f} or beyond." in page
     of_cdt = where["one size, rolling on relative spin"].removesuffix(" to beyond 8")
-    assert float(of_cdt) > 6.0 and "beyond 6 again" in page
+    short = critical.set_index("candidate").loc["one size, rolling on relative spin, time step 0.1"]
+    least, most = short["where"].split(" to ")
+    brings = (
+        f"as well brings it to {float(short['critical scale']):.1f} (95 %: {least} to {float(most):.1f}) with as long"
+    )
+    assert brings in page and f"and to {float(of_cdt):.1f} or beyond with four times that" in page
+    for candidate, words in (
+        (
+            "one size, rolling on relative spin, time step 0.1",
+            "wears {:.2f}, {:.2f} and {:.2f} of the plain one at scales 4, 6",
+        ),
+        ("one size, rolling on relative spin", "from step to step, it wears {:.2f}, {:.2f} and {:.2f}."),
+    ):
+        assert words.format(*found.loc[candidate, "wear over plain"].astype(float)[["4", "6", "8"]]) in page
+    source = map(source_ratio, (4, 6, 8))
+    assert "by the source's lines {:.2f}, {:.2f} and {:.2f}: alike at 4".format(*source) in page
     alike = rows("particle_size_one_size_results_quick.md", "setting", "particle scale", "layers of particles")
     of_study = alike.set_index("setting")["wear over plain"].astype(float)
     assert f"(particle_size_one_size_results_quick.md): {of_study['S4']:.2f} at scale 4, {of_study['S12']:.2f}" in page
