@@ -14,7 +14,7 @@ from bulkwear.postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, new_figure
 LINE_HEIGHT = 0.19  # inches
 LEGEND_AND_REMARKS = 2.4  # inches
 CURVES_HEIGHT = 4.6  # inches
-COLUMNS = 3  # of a legend
+COLUMNS, LONG = 3, 40  # of a legend, one less where a label has more letters
 SOURCE, SOURCE_COLOUR = "Yan 2022, Eq 4.14, 4.15", "#009E73"
 SHADES = ("black", BLUE, OTHER_COLOUR, ORANGE, "#56B4E9", "#CC79A7", "#E69F00")  # of candidates, the reference first
 MARKERS = ("D", "o", "^", "s", "v", "P", "X")
@@ -54,7 +54,7 @@ def ratio_by_candidate(table: pd.DataFrame, source: Mapping[int, float], remarks
             axes.plot(value, places, marker, color=shade, markersize=5.0, label=words)
         largest = np.nanmax([source[scale], *rows["wear_over_plain"], *rows["ratio_high"]])
         axes.set(xlim=(0.0, 1.08 * largest))
-        axes.set_title(f"{'particle ' if axes is panels[0] else ''}scale {scale:g}", loc="left")
+        axes.set_title(f"scale {scale:g}", loc="left")
         axes.grid(axis="y", visible=False)
     # below each panel the words would meet
     panels[0].set_xlabel("Wear, convex over plain (-)", loc="left")
@@ -88,4 +88,5 @@ def ratio_by_scale(table: pd.DataFrame, source: Mapping[float, float], remarks: 
 def _legend(figure: Figure, panels: Sequence[Axes]) -> None:
     """Name each line once, whichever panel has it."""
     named = {label: line for axes in panels for line, label in zip(*axes.get_legend_handles_labels(), strict=True)}
-    figure.legend(named.values(), named, loc="outside upper center", ncols=COLUMNS)
+    columns = COLUMNS - any(len(label) > LONG for label in named)
+    figure.legend(named.values(), named, loc="outside upper center", ncols=columns)
