@@ -13,11 +13,21 @@ from bulkwear.postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, new_figure
 
 LINE_HEIGHT = 0.19  # inches
 LEGEND_AND_REMARKS = 2.4  # inches
-CURVES_HEIGHT = 4.6  # inches
+CURVES_HEIGHT = 5.0  # inches
 COLUMNS, LONG = 3, 40  # of a legend, one less where a label has more letters
 SOURCE, SOURCE_COLOUR = "Yan 2022, Eq 4.14, 4.15", "#009E73"
-SHADES = ("black", BLUE, OTHER_COLOUR, ORANGE, "#56B4E9", "#CC79A7", "#E69F00")  # of candidates, the reference first
-MARKERS = ("D", "o", "^", "s", "v", "P", "X")
+SHADES = (
+    "black",
+    BLUE,
+    OTHER_COLOUR,
+    ORANGE,
+    "#56B4E9",
+    "#CC79A7",
+    "#E69F00",
+    "#882255",
+    "#999933",
+)  # of candidates, the reference first
+MARKERS = ("D", "o", "^", "s", "v", "P", "X", "<", ">")
 APART = 0.03  # -, of a particle scale: intervals of candidates do not cover each other
 KINDS = {  # what the source says of a thing -> words, colour, marker
     "": ("the study with the source's pair", "black", "D"),
