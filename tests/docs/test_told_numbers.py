@@ -383,10 +383,15 @@ def test_why_the_critical_scale_differs():
         "{:.2f} | {:.2f} | {:.2f} |".format(*each) for each in (ratio[1:], map(source_ratio, (4, 6, 8)))
     ]
     assert f"ours, two packings | {of_ours}" in page and f"the source | {of_source}" in page
-    by_hand = table("constant_torque.csv").pivot(
+
+
+def test_the_table_of_a_constant_torque():
+    """Convex over plain by time step and scale, and where it would pass one."""
+    page = told("particle_size.md")
+    runs = table("constant_torque.csv").pivot(
         index=["rayleigh_fraction", "particle_scale"], columns="surface", values="wear_mm3_per_m"
     )
-    ratios = (by_hand["convex"] / by_hand["plain"]).unstack()
+    ratios = (runs["convex"] / runs["plain"]).unstack()
     short = ratios.index < 0.05  # one step, 5e-6 s, over the Rayleigh time of each scale
     for fraction, line in ratios[~short].iterrows():
         cells = " | ".join("-" if math.isnan(each) else f"{each:.2f}" for each in line)
