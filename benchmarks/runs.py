@@ -124,7 +124,7 @@ def simulated_run(chain: Chain, bed_name: str) -> Chain:
     """
     with_bed(chain, bed_name)
     if not chain.surface.exists():
-        write_surface(chain.surface, sample_surface(chain.parameters["sample"], chain.parameters["pattern"]))
+        write_surface(chain.surface, chain.case.surface_mesh(chain.parameters))
     if not is_simulated(chain):
         run_chain(chain)
     return chain

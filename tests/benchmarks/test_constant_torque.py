@@ -1,29 +1,17 @@
-"""A solver whose torque of `rvd` no time step ends: what is changed of ours, and which runs stand in the table."""
+"""The table of a solver whose torque of `rvd` no time step ends: which runs stand in it."""
 
 import pandas as pd
 import pytest
 
-from benchmarks.constant_torque import CHANGED, FILE, FRACTIONS, FUNCTION, KEYS, PROGRAM, asked_for, changed_source
+from benchmarks.constant_torque import CHANGE, FILE, FRACTIONS, KEYS, asked_for
 from bulkwear.workflows.engine.project import PACKAGE
 
 
-def function():
-    return (PACKAGE / "benchmarks" / "solver_programs" / PROGRAM).read_text()
-
-
-def test_one_function_of_the_solver_is_another_and_no_more():
-    """Its text stands in place of ours; lines before and behind stay."""
-    source = (PACKAGE / "solver" / CHANGED).read_text()
-    changed = changed_source(source, function())
-    start = source.index(FUNCTION)
-    assert changed[:start] == source[:start] and changed.count(FUNCTION) == 1
-    assert "least_energy_share(free)" not in changed[start : changed.index("}\n\n", start)]
-    assert changed.endswith(source[source.index("// Returns the sum of squares of the largest torques") :])
-
-
-def test_a_solver_without_that_function_is_refused():
-    with pytest.raises(ValueError, match=r"found void FixTurningFriction::act.* 0 times, allowed is once"):
-        changed_source("int main() {\n}\n", function())
+def test_no_step_ends_the_torque():
+    """The changed function does not ask what ends within the step, as ours does."""
+    source = (PACKAGE / "solver" / CHANGE.changed).read_text()
+    ours, asks = source[source.index(CHANGE.function) :].split("\n}\n")[0], "least_energy_share("
+    assert asks in ours and asks not in CHANGE.text()
 
 
 def test_the_table_has_the_runs_that_are_asked_for(tmp_path):
