@@ -227,6 +227,8 @@ def where_it_lies(found: Crossing, rows: pd.DataFrame) -> str:
         return f"above {told.max():g}, if anywhere: the convex sample wears less from {told.min():g} on{by_one}"
     if len(known) and (known["ratio_low"] > 1.0).all():
         return f"below {told.min():g}, if anywhere: the convex sample wears more up to {told.max():g}{by_one}"
+    if not found.forms and found.below < found.above:
+        return f"between {found.below:g} and {found.above:g}, each by its own packings; {found.reason}"
     return f"not told: {found.reason}"
 
 

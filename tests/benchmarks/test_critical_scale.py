@@ -318,6 +318,15 @@ def test_a_scale_of_one_packing_decides_nothing():
     assert where_it_lies(found, table) == "not told: none between the places"
 
 
+def test_where_no_form_fits_two_scales_tell_it():
+    """By their own packings; never where forms were found or a side is missing."""
+    found = Crossing(np.nan, np.nan, np.nan, 4.0, 8.0, 0, 5, 2, "no form tried")
+    table = table_of({REFERENCE: (0.9, 1.1)})
+    assert where_it_lies(found, table) == "between 4 and 8, each by its own packings; no form tried"
+    for other in (replace(found, forms=1), replace(found, above=np.nan)):
+        assert where_it_lies(other, table) == "not told: no form tried"
+
+
 def test_a_candidate_has_a_critical_scale():
     """Ratio 0.25 times the scale, with a scatter of a hundredth: one at scale 4. Two scales tell none."""
     runs = [
