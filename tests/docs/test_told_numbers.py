@@ -349,7 +349,8 @@ def test_why_the_critical_scale_differs():
     for_study = where["the study with the source's pair"].removesuffix(" to beyond 8")
     assert f"none or one below 4, where the study has {float(for_study):.1f} or beyond." in page
     of_cdt = where["one size, rolling on relative spin"].removesuffix(" to beyond 8")
-    assert f"hangs on the time step: {float(of_cdt):.1f} or beyond with 0.4 of the Rayleigh time, between 3 and 5 with" in page
+    words = f"hangs on the time step: {float(of_cdt):.1f} or beyond with 0.4 of the Rayleigh time, between 3 and 5 with"
+    assert words in page
     spin = "one size, rolling on relative spin"
     assert where[f"{spin}, time step 0.1"].startswith("between 3 and 5, each by its own packings; no form tried")
     by_step = [
