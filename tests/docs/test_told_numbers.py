@@ -9,6 +9,8 @@ import yaml
 from benchmarks.rolling_case import MODELS
 from benchmarks.scale_page import source_ratio
 from benchmarks.time_step_page import answers
+from bulkwear.postproc.reference.dragged_bed import largest_dragged_share
+from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.beds import (
     DENSITY_TOLERANCE,
     LEVEL_TOLERANCE,
@@ -382,6 +384,30 @@ def test_why_the_critical_scale_differs():
         "{:.2f} | {:.2f} | {:.2f} |".format(*each) for each in (ratio[1:], map(source_ratio, (4, 6, 8)))
     ]
     assert f"ours, two packings | {of_ours}" in page and f"the source | {of_source}" in page
+
+
+def test_how_far_friction_alone_takes_a_bed_along():
+    """By hand, with the sizes of the study, and what is published and found."""
+    page, run = told("particle_size.md"), load_study("particle_size", overrides={"rows": ["S4"]}).run("S4_plain")
+    given = run.parameters
+    friction, length = given["sample_material"]["contact"]["sliding_friction"], given["sample"]["length_m"]
+    speed = given["sliding"]["velocity_m_per_s"]
+    share = 100.0 * largest_dragged_share(friction, length, speed)
+    words = f"friction of {friction:g} on {1e3 * length:g} mm of sample takes a bed that nothing holds back along by"
+    assert f"{words} {share:.0f} % at {speed:g} m/s" in page
+    assert (
+        f"takes a bed along by {share:.0f} % of the plain"
+        in (REPOSITORY / "config/published/differences.yaml").read_text()
+    )
+    found = [
+        float(each)
+        for fidelity in ("quick", "standard")
+        for each in re.findall(
+            r"relative velocity \(plain\) ([\d.]+) % at scale \d+ and ([\d.]+) %",
+            told(f"particle_size_results_{fidelity}.md"),
+        )[0]
+    ]
+    assert f"velocity, here at {min(found):.0f} to {max(found):.0f} %" in page and max(found) < share
 
 
 def test_the_table_of_a_constant_torque():
