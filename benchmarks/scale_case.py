@@ -155,6 +155,9 @@ CANDIDATES: dict[str, Candidate] = {
     "rolling friction of the sample 0.6": Candidate(
         _of_sample(rolling_friction=0.6), PUBLISHED, "instead of 0.3 (Table 3.2)"
     ),
+    "sliding friction of the sample 0.21": Candidate(
+        _of_sample(sliding_friction=0.21), PUBLISHED, "that of gravel on gravel, instead of 0.38 (Table 3.2)"
+    ),
     "sliding friction of the sample 0.5": Candidate(
         _of_sample(sliding_friction=0.5), PUBLISHED, "instead of 0.38 (Table 3.2)"
     ),
