@@ -16,6 +16,7 @@ from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHE
 from bulkwear.postproc.reference.sphere_contact import effective_modulus, hertz_overlap
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.config.claims import ABOUT
 from bulkwear.workflows.engine.derived import youngs_modulus
 from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.markdown_text import markdown, prose
@@ -28,14 +29,16 @@ FLAT_SIDE = 0.03  # m
 SPHERES = 1000  # at random places, of each scale and way
 GRAVEL = (youngs_modulus(0.07e9, 0.24), 0.24)  # Pa, -: Young's modulus and Poisson's ratio (Yan 2022, Table 3.2)
 BULK_DENSITY, THICKNESS = 1450.0, 0.046  # kg/m3, m, of the source's bed
+PERCENT = 100.0
 NEWTONS_TIMES = (1.0, 10.0)  # loads, over the bed's weight on a square as wide as the particle
 
 
-def source_ratio(scale: float) -> float:
-    """Return the convex sample's wear over the plain one's by the source's lines (-)."""
+def source_ratio(scale: float, part: str = "convex") -> float:
+    """Return the convex sample's wear, or that of a part of it (base, bumps), over the plain one's by the source's
+    lines (-)."""
     lines = pd.read_csv(PACKAGE / LINES).set_index("curve")
-    convex, plain = (lines.loc[name, "intercept"] + lines.loc[name, "slope"] * scale for name in ("convex", "plain"))
-    return float(convex / plain)
+    found, plain = (lines.loc[name, "intercept"] + lines.loc[name, "slope"] * scale for name in (part, "plain"))
+    return float(found / plain)
 
 
 def touched_by_scale() -> pd.DataFrame:
@@ -72,10 +75,12 @@ def conclusion(rows: pd.DataFrame) -> str:
     """Return in words what moved the ratio at a particle scale, and whether anything reaches the source's."""
     scale, others = rows["particle_scale"].iloc[0], rows[rows["candidate"] != REFERENCE]
     reference, source = rows[rows["candidate"] == REFERENCE].iloc[0], source_ratio(scale)
+    base = source_ratio(scale, "base")
     head = (
         f"Particle scale {scale:g}: {REFERENCE} has {reference['wear_over_plain']:.2f}, the source's lines"
         f" {source:.2f}, {source / reference['wear_over_plain']:.1f} times as much. With base and plain sample as they"
-        f" are here, the bumps would have to wear {needed_factor(reference, scale):.1f} times as much."
+        f" are here, the bumps would have to wear {needed_factor(reference, scale):.1f} times as much. The source's"
+        f" base has {base:.3f} of the plain sample's wear, here it has {reference['base_over_plain']:.3f}."
     )
     if others.empty:
         return head
@@ -83,10 +88,18 @@ def conclusion(rows: pd.DataFrame) -> str:
     moved = [f"{row.candidate} ({row.over_reference:.2f})" for row in ranked.itertuples()]
     above = [row.candidate for row in ranked.itertuples() if row.wear_over_plain >= source]
     holds = [row.candidate for row in ranked.itertuples() if row.ratio_low <= source <= row.ratio_high]
+    off = [f"{row.candidate} ({row.base_over_plain:.3f})" for row in ranked.itertuples() if is_off(row, base)]
     return (
         f"{head} Over that ratio, largest first: {'; '.join(moved)}. Above the source's ratio:"
-        f" {'; '.join(above) or 'none of them'}. Intervals that hold it: {'; '.join(holds) or 'none'}."
+        f" {'; '.join(above) or 'none of them'}. Intervals that hold it: {'; '.join(holds) or 'none'}. Base more than"
+        f" {PERCENT * ABOUT:g} % off the source's: {'; '.join(off) or 'none'}."
     )
+
+
+def is_off(row, base: float) -> bool:
+    """Return whether a candidate's base wears more or less than the source's, by more than what is
+    told as one value is given."""
+    return abs(row.base_over_plain / base - 1.0) > ABOUT
 
 
 def versions_words(runs: pd.DataFrame) -> str:

@@ -27,6 +27,7 @@ SHADES = (
     "#882255",
     "#999933",
 )  # of candidates, the reference first
+LINE_STYLES = ("-", ":", "-.")  # of the candidates that have the first shades, of the next ones
 MARKERS = ("D", "o", "^", "s", "v", "P", "X", "<", ">")
 APART = 0.03  # -, of a particle scale: intervals of candidates do not cover each other
 KINDS = {  # what the source says of a thing -> words, colour, marker
@@ -88,7 +89,8 @@ def ratio_by_scale(table: pd.DataFrame, source: Mapping[float, float], remarks: 
     for number, (name, rows) in enumerate(curves):
         rows, look = rows.sort_values("particle_scale"), {"color": SHADES[number % len(SHADES)], "linewidth": 1.1}
         place = rows["particle_scale"] + APART * (number - 0.5 * (len(curves) - 1))
-        axes.plot(place, rows["wear_over_plain"], MARKERS[number % len(MARKERS)], linestyle="-", label=name, **look)
+        marker, line = MARKERS[number % len(MARKERS)], LINE_STYLES[number // len(SHADES) % len(LINE_STYLES)]
+        axes.plot(place, rows["wear_over_plain"], marker, linestyle=line, label=name, **look)
         axes.vlines(place, rows["ratio_low"], rows["ratio_high"], **look)
     axes.set(xlabel="Particle scale (-)", ylabel="Wear, convex over plain (-)", ylim=(0.0, None))
     _legend(figure, [axes])

@@ -198,6 +198,8 @@ def test_page_and_figure(tmp_path, monkeypatch):
     around = table.assign(ratio_low=1.4, ratio_high=1.6)  # the source's lines have 1.48
     assert f"Intervals that hold it: {OTHER}." in conclusion(around)
     assert "Intervals that hold it: none." in conclusion(around.assign(ratio_low=1.5))
+    for base, off in ((0.139, "none"), (0.15, "none"), (0.2, f"{OTHER} (0.200)")):  # the source's lines have 0.138
+        assert f"Base more than 15 % off the source's: {off}." in conclusion(table.assign(base_over_plain=base))
     said = " ".join(remarks(single, table))
     assert "at most 1 packings of the study with the source's pair" in said and "not known" in said
     assert "not known" in scale_page.scatter_words(table) and "bumps turned" not in page
