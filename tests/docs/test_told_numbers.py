@@ -7,6 +7,7 @@ import pandas as pd
 import yaml
 
 from benchmarks.rolling_case import MODELS
+from benchmarks.scale_case import APART, DEVIATION
 from benchmarks.scale_page import source_ratio
 from benchmarks.time_step_page import answers
 from bulkwear.postproc.reference.dragged_bed import largest_dragged_share
@@ -354,7 +355,7 @@ def test_why_the_critical_scale_differs():
     assert where["one size of particles"].startswith("below 4, if anywhere") and (alone > 1.0).all()
     assert where["one size, rolling as rvd"].startswith("below 3, if anywhere") and "is below 3, if it has one." in page
     for_study = where["the study with the source's pair"].removesuffix(" to beyond 8")
-    assert f"none or one below 4, where the study has {float(for_study):.1f} or beyond." in page
+    assert f"bring it from {float(for_study):.1f} or beyond to" in page and "none or one below 4. With" in page
     of_cdt = where["one size, rolling on relative spin"].removesuffix(" to beyond 8")
     words = f"hangs on the time step: {float(of_cdt):.1f} or beyond with 0.4 of the Rayleigh time, between 3 and 5 with"
     assert words in page
@@ -418,7 +419,10 @@ def test_what_else_moves_the_ratio():
         ("sliding friction of the sample 0.5", "sample 0.5 {:.2f}."),
     ):
         assert words.format(over.pop(name)) in page
-    rest = over[~over.index.str.startswith(("one size", "rolling as", "rolling on")) & (over.index != friction)]
+    rest = over[
+        ~over.index.str.startswith(("one size", "rolling as", "rolling on"))
+        & ~over.index.isin([friction, "sizes 0.88 to 1.12"])
+    ]
     assert len(rest) == 11 and f"c and d exchanged: {rest.min():.2f} to {rest.max():.2f}." in page
     half = [each / source_ratio(float(at)) for at, each in number(ratios, study, "wear over plain").items()]
     base = number(parts, study, "base over plain")
@@ -430,10 +434,28 @@ def test_what_else_moves_the_ratio():
         float
     )
     alone = number(parts, "one size of particles", "base over plain")
-    assert f"`cdt` it is {relative.min():.2f} to {relative.max():.2f}, with one" in page
+    assert f"with `cdt` the base is {relative.min():.2f} to {relative.max():.2f}, with one" in page
     assert f"with one size {alone.min():.2f} to {alone.max():.2f}, with bumps" in page
     turned = number(parts, "bumps turned", "base over plain")
     assert f"with bumps turned {turned.loc['6']:.2f}." in page and turned.max() - turned.min() < 0.01
+    narrow = number(parts, "sizes 0.88 to 1.12", "base over plain")
+    of_narrow = number(ratios, "sizes 0.88 to 1.12", "wear over plain")
+    share = [each / source_ratio(float(at)) for at, each in of_narrow.items()]
+    assert f"make {min(share):.2f} to {max(share):.2f} of it, with a base of {narrow.min():.2f} to" in page
+    assert f"a base of {narrow.min():.2f} to {narrow.max():.2f}." in page
+    assert (
+        "{:.2f} (one packing), {:.2f}, {:.2f} and {:.2f} of the plain one at 3, 4, 6 and 8:".format(*of_narrow) in page
+    )
+    told_where = critical.set_index("candidate").loc["sizes 0.88 to 1.12", ["critical scale", "where"]]
+    ends = "{:.1f} to {:.1f}".format(*map(float, told_where["where"].split(" to ")))
+    assert f"critical scale {float(told_where['critical scale']):.1f} ({ends}), the nearest" in page
+    assert f"from 7.3 or beyond to {float(told_where['critical scale']):.1f}. With one" in page
+    assert (
+        f"deviation would be {DEVIATION:.3f} of the median" in page
+        and f"{1.0 - APART:g}, 1 and {1.0 + APART:g} the" in page
+    )
+    assert f"1.2 of it, have {0.2 * 0.5**0.5:.3f}." in page
+    assert f"that it prints have {float(told_where['critical scale']):.1f}" in known_causes()
     standing = number(parts, "sample 5 mm above the floor", "velocity percent plain")["6"]
     assert f"floor it is {standing:.0f} % (scale 6" in page
     assert f"a front edge of 5 mm by {standing:.0f} %" in known_causes()
