@@ -373,8 +373,9 @@ def test_why_the_critical_scale_differs():
     source = map(source_ratio, (3, 4, 5, 6, 8))
     assert "The source's lines have {:.2f}, {:.2f}, {:.2f}, {:.2f} and {:.2f}: those with 0.1".format(*source) in page
     alike = rows("particle_size_one_size_results_quick.md", "setting", "particle scale", "layers of particles")
-    of_study = alike.set_index("setting")["wear over plain"].astype(float)
-    assert f"(particle_size_one_size_results_quick.md): {of_study['S4']:.2f} at scale 4, {of_study['S12']:.2f}" in page
+    ends = alike.set_index("setting")[["wear over plain", "interval low", "interval high"]].astype(float)
+    at_4, at_12 = ("{:.2f} ({:.2f} to {:.2f})".format(*ends.loc[name]) for name in ("S4", "S12"))
+    assert f"(particle_size_one_size_results_quick.md): {at_4} at scale 4, {at_12} at 12." in page
     at_4 = one.loc["4", ["over reference", "over reference low", "over reference high"]].astype(float)
     assert "the ratio {:.1f} times ({:.1f} to {:.1f}) as large at scale 4".format(*at_4) in page
     off = [

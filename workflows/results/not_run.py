@@ -54,9 +54,9 @@ NOT_RUN = (
         },
     ),
     NotRun(
-        "particle size: one size of particles with three packings; they have one",
-        "particle_size_one_size",
-        {"fidelity": "quick"},
+        "particle size: scale 2 at standard",
+        "particle_size",
+        {"fidelity": "standard", "rows": ["S2"]},
     ),
     NotRun(
         "circular tester: ring, and particle scales below 6, by the present code",
