@@ -3,7 +3,7 @@
 Archard's law multiplies the normal force with the distance that the contact slides. The documentation of EDEM calls it
 the tangential distance moved and does not say whether the spin of the particle is in it; here it is.
 
-    python -m benchmarks.path_of_centres --cores 2    # in the root of the repository; about an hour
+    python -m benchmarks.path_of_centres --cores 2    # in the root of the repository; half an hour
     python -m benchmarks.path_of_centres --only tester
 
 Rows of the studies `tester_sensitivity` and `particle_size`, quick, one packing. Builds the solver with
@@ -36,7 +36,7 @@ TESTER, GRAVEL = "tester", "particle_size"  # which of the studies
 TESTER_STUDY, TESTER_SCALE = "tester_sensitivity", 6
 OF_TESTER = {"": "the study's reference, cdt", "rolling-": "own_spin"}  # beginning of a row's name
 OF_GRAVEL = (REFERENCE, "rolling on relative spin", "one size, rolling on relative spin, time step 0.1")
-SCALES = (4, 8)
+SCALES = (8,)  # where particles roll most, beside what they slide
 FILE, KEYS = "path_of_centres.csv", ["study", "particle_scale", "setting", "surface"]
 Asked = tuple[dict[str, Any], Chain]
 
