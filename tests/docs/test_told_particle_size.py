@@ -5,6 +5,7 @@ import re
 
 import yaml
 
+from benchmarks.path_of_centres import OF_GRAVEL, compared
 from benchmarks.scale_case import APART, DEVIATION
 from benchmarks.scale_page import source_ratio
 from bulkwear.postproc.reference.dragged_bed import largest_dragged_share
@@ -209,6 +210,17 @@ def test_what_else_moves_the_ratio():
     standing = number(parts, "sample 5 mm above the floor", "velocity percent plain")["6"]
     assert f"floor it is {standing:.0f} % (scale 6" in page
     assert f"a front edge of 5 mm by {standing:.0f} %" in known_causes()
+
+
+def test_what_the_path_of_the_centres_would_make():
+    """The ratio by either path at scale 8, in the order of the words."""
+    page, told_of = told("particle_size.md"), compared(table("path_of_centres.csv")).loc["particle_size", 8]
+    by = told_of[["convex over plain by centres", "convex over plain by contacts"]].map("{:.2f}".format)
+    study, spin, both = (by.loc[name].tolist() for name in OF_GRAVEL)
+    assert "at scale 8 {} instead of {}, under `cdt` {} instead of {}, with".format(*study, *spin) in page
+    assert "Rayleigh time) {} instead of {}, by".format(*both) in page
+    largest = told_of["centres over contacts, convex"] / told_of["centres over contacts, plain"]
+    assert f"(path_of_centres.csv): up to {largest.max():.2f} times, where" in page
 
 
 def test_how_far_friction_alone_takes_a_bed_along():

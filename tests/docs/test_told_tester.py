@@ -3,6 +3,8 @@
 import math
 import re
 
+from benchmarks.path_of_centres import OF_TESTER, TESTER_SCALE, compared
+from benchmarks.scale_case import SURFACES
 from tests.support.told import rows, table, told
 
 BUMPS = [f"Largest loss of {bump} after 240.3 mm3" for bump in ("C11", "C13", "C15")]  # findings
@@ -167,3 +169,18 @@ def test_when_the_testers_pattern_is_worn_out():
     assert f"From {gone['faster revolution']} on, with {100.0 * float(gone['faster share']):.0f} % of it left" in page
     assert f"it has lost {gone['lost over plain']} of what" in page and f"makes of all {revolutions:.0f}; caps" in page
     assert f"caps hold back {run['carried share percent']:.0f} % of it" in page
+
+
+def test_what_the_path_of_the_centres_would_make_of_the_tester():
+    """Centres over contacts under cdt, the volume and the ratio by their path; under own_spin the two are alike."""
+    page = told("circular_tester.md")
+    found = compared(table("path_of_centres.csv")).loc["tester_sensitivity", TESTER_SCALE]
+    columns = [f"centres over contacts, {surface}" for surface in SURFACES]
+    relative, own = (found.loc[setting, columns] for setting in (OF_TESTER[""], OF_TESTER["rolling-"]))
+    assert "centres move {:.2f} (plain) and {:.2f} times (convex) as far".format(*relative) in page
+    values, _ = reached()
+    volume = values["Volume per revolution, plain"]["reference"] * relative.iloc[0]
+    ratios = found.loc[OF_TESTER[""], ["convex over plain by centres", "convex over plain by contacts"]]
+    assert f"would lose {volume:.0f} mm³ a revolution, published" in page
+    assert "and the convex one {:.2f} of it instead of {:.2f}, the source's".format(*ratios) in page
+    assert own.max() < 1.02 and "`own_spin` the two are within 2 %." in page
