@@ -34,8 +34,7 @@ NEWTONS_TIMES = (1.0, 10.0)  # loads, over the bed's weight on a square as wide 
 
 
 def source_ratio(scale: float, part: str = "convex") -> float:
-    """Return the convex sample's wear, or that of a part of it (base, bumps), over the plain one's by the source's
-    lines (-)."""
+    """Return the wear of the convex sample, or of its base or bumps, over the plain one's by the source's lines (-)."""
     lines = pd.read_csv(PACKAGE / LINES).set_index("curve")
     found, plain = (lines.loc[name, "intercept"] + lines.loc[name, "slope"] * scale for name in (part, "plain"))
     return float(found / plain)
@@ -97,8 +96,7 @@ def conclusion(rows: pd.DataFrame) -> str:
 
 
 def is_off(row, base: float) -> bool:
-    """Return whether a candidate's base wears more or less than the source's, by more than what is
-    told as one value is given."""
+    """Return whether a candidate's base misses the source's by more than the margin of what is told as one value."""
     return abs(row.base_over_plain / base - 1.0) > ABOUT
 
 

@@ -151,7 +151,10 @@ def test_what_else_moves_the_ratio():
         for columns in ((*names, "kind"), (*names, "wear mm3 per m convex"))
     }
     ratios, parts = (by[key] for key in by)
-    number = lambda table, name, column: table.xs(name, level="candidate")[column].astype(float)  # noqa: E731
+
+    def number(table, name, column):
+        return table.xs(name, level="candidate")[column].astype(float)
+
     friction, study = "sliding friction of the sample 0.21", "the study with the source's pair"
     ratio = number(ratios, friction, "wear over plain").map("{:.2f}".format)
     moved, of_study = (number(parts, name, "velocity percent convex") for name in (friction, study))
