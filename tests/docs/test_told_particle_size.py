@@ -6,7 +6,7 @@ import re
 import yaml
 
 from benchmarks.path_of_centres import OF_GRAVEL, compared
-from benchmarks.scale_case import APART, DEVIATION
+from benchmarks.scale_case import APART, DEVIATION, REFERENCE
 from benchmarks.scale_page import source_ratio
 from bulkwear.postproc.reference.dragged_bed import largest_dragged_share
 from bulkwear.workflows.config.design import load_study
@@ -143,29 +143,35 @@ def test_why_the_critical_scale_differs():
     assert f"ours, two packings | {of_ours}" in page and f"the source | {of_source}" in page
 
 
+def candidates():
+    """Ratios of the candidates of the critical scale, and their parts, by particle scale and candidate."""
+    names = ["particle scale", "candidate"]
+    first = ((*names, "kind"), (*names, "wear mm3 per m convex"))
+    return [rows("critical_scale_results.md", *columns).set_index(names) for columns in first]
+
+
+def number(of, name, column):
+    """A column of one candidate by particle scale."""
+    return of.xs(name, level="candidate")[column].astype(float)
+
+
+def critical_scales():
+    """What the page tells of the critical scale of each candidate."""
+    return rows("critical_scale_results.md", "candidate", "scales", "packings", "critical scale").set_index("candidate")
+
+
 def test_what_else_moves_the_ratio():
-    """Friction of the sample, the other candidates at scale 6, and how the study's curve lies to the source's."""
-    page, names = told("particle_size.md"), ["particle scale", "candidate"]
-    by = {
-        columns: rows("critical_scale_results.md", *columns).set_index(names)
-        for columns in ((*names, "kind"), (*names, "wear mm3 per m convex"))
-    }
-    ratios, parts = (by[key] for key in by)
-
-    def number(table, name, column):
-        return table.xs(name, level="candidate")[column].astype(float)
-
-    friction, study = "sliding friction of the sample 0.21", "the study with the source's pair"
+    """Friction of the sample, and the other candidates at scale 6."""
+    page, friction, (ratios, parts) = told("particle_size.md"), "sliding friction of the sample 0.21", candidates()
     ratio = number(ratios, friction, "wear over plain").map("{:.2f}".format)
-    moved, of_study = (number(parts, name, "velocity percent convex") for name in (friction, study))
+    moved, of_study = (number(parts, name, "velocity percent convex") for name in (friction, REFERENCE))
     assert "wears {}, {} and {} of the plain one at 4, 6 and 8, critical".format(*ratio) in page
     assert "moves at {:.0f}, {:.0f} and {:.0f} % of its".format(*moved) in page
     assert f"the study has {of_study['5']:.0f} and {of_study['8']:.0f} %." in page
-    critical = rows("critical_scale_results.md", "candidate", "scales", "packings", "critical scale")
-    where = critical.set_index("candidate").loc[friction, ["critical scale", "where"]]
+    where = critical_scales().loc[friction, ["critical scale", "where"]]
     low, high = map(float, where["where"].split(" to "))
     assert f"critical scale {float(where['critical scale']):.1f} ({low:.1f} to {high:.1f})" in page
-    over = ratios.loc["6", "over reference"].drop(study).astype(float)
+    over = ratios.loc["6", "over reference"].drop(REFERENCE).astype(float)
     for name, words in (
         ("bumps turned", "instead of across it, {:.2f}"),
         ("neighbouring rows 40 mm apart", "40 mm apart {:.2f}"),
@@ -178,8 +184,13 @@ def test_what_else_moves_the_ratio():
         & ~over.index.isin([friction, "sizes 0.88 to 1.12"])
     ]
     assert len(rest) == 11 and f"c and d exchanged: {rest.min():.2f} to {rest.max():.2f}." in page
-    half = [each / source_ratio(float(at)) for at, each in number(ratios, study, "wear over plain").items()]
-    base = number(parts, study, "base over plain")
+
+
+def test_how_the_studys_curve_lies_to_the_sources():
+    """Ratios and bases of the study, of narrower sizes and of other candidates over those of the source's lines."""
+    page, (ratios, parts) = told("particle_size.md"), candidates()
+    half = [each / source_ratio(float(at)) for at, each in number(ratios, REFERENCE, "wear over plain").items()]
+    base = number(parts, REFERENCE, "base over plain")
     of_source = [source_ratio(float(at), "base") for at in base.index]
     assert f"is {min(half):.2f} to {max(half):.2f} of the source's, and" in page
     assert f"wears {base.min():.3f} to {base.max():.3f} of the plain sample" in page
@@ -200,7 +211,7 @@ def test_what_else_moves_the_ratio():
     assert (
         "{:.2f} (one packing), {:.2f}, {:.2f} and {:.2f} of the plain one at 3, 4, 6 and 8:".format(*of_narrow) in page
     )
-    told_where = critical.set_index("candidate").loc["sizes 0.88 to 1.12", ["critical scale", "where"]]
+    told_where = critical_scales().loc["sizes 0.88 to 1.12", ["critical scale", "where"]]
     ends = "{:.1f} to {:.1f}".format(*map(float, told_where["where"].split(" to ")))
     assert f"critical scale {float(told_where['critical scale']):.1f} ({ends}), the nearest" in page
     assert f"from 7.3 or beyond to {float(told_where['critical scale']):.1f}. With one" in page
