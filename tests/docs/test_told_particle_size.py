@@ -214,7 +214,10 @@ def test_how_the_studys_curve_lies_to_the_sources():
     told_where = critical_scales().loc["sizes 0.88 to 1.12", ["critical scale", "where"]]
     ends = "{:.1f} to {:.1f}".format(*map(float, told_where["where"].split(" to ")))
     assert f"critical scale {float(told_where['critical scale']):.1f} ({ends}), the nearest" in page
-    assert f"from 7.3 or beyond to {float(told_where['critical scale']):.1f}. With one" in page
+    low = critical_scales().loc[REFERENCE, "where"].removesuffix(" to beyond 8")
+    single = ratios.xs("sizes 0.88 to 1.12", level="candidate")["packings"]
+    assert single.tolist() == ["1", "2", "2", "2"] and "leans on scale 3 with its one packing" in page
+    assert f"from {float(low):.1f} or beyond to {float(told_where['critical scale']):.1f}. With one" in page
     assert (
         f"deviation would be {DEVIATION:.3f} of the median" in page
         and f"{1.0 - APART:g}, 1 and {1.0 + APART:g} the" in page
@@ -223,6 +226,10 @@ def test_how_the_studys_curve_lies_to_the_sources():
     assert f"that it prints have {float(told_where['critical scale']):.1f}" in known_causes()
     standing = number(parts, "sample 5 mm above the floor", "velocity percent plain")["6"]
     assert f"floor it is {standing:.0f} % (scale 6" in page
+    runs = table("critical_scale.csv").query("particle_scale == 6 and surface == 'plain'").groupby("candidate")
+    force = runs["normal_force_N"].first()
+    pressed = force["sample 5 mm above the floor"], force[REFERENCE]
+    assert "on the sample with {:.0f} N, the flat one's with {:.0f}.".format(*pressed) in page
     assert f"a front edge of 5 mm by {standing:.0f} %" in known_causes()
 
 
