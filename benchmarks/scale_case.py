@@ -108,6 +108,15 @@ CANDIDATES: dict[str, Candidate] = {
         f"of the median, 25, 50 and 25 % of the mass: the standard deviation, {DEVIATION:.3f}, of a normal distribution"
         " with 0.26 % below 2 mm, as is printed; that of the study's 0.8, 1 and 1.2 is 0.141",
     ),
+    "sizes 0.88 to 1.12, rolling on relative spin, time step 5e-6 s": Candidate(
+        {
+            "particle": {SIZES: [1.0 - APART, 1.0, 1.0 + APART], "mass_fractions": [0.25, 0.5, 0.25]},
+            "solver": {"rolling_friction": "cdt", TIME_STEP: SOURCE_STEP},
+        },
+        OPEN,
+        "all three as the source prints them: the share below 2 mm, rolling friction of type A on relative spin"
+        " (Equation 3.3), and the step of its bulk tests",
+    ),
     "sizes 0.5 to 1.5": Candidate(
         {"particle": {SIZES: [0.5, 0.75, 1.0, 1.25, 1.5], "mass_fractions": [0.1, 0.2, 0.4, 0.2, 0.1]}},
         OPEN,
