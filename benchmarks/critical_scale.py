@@ -212,11 +212,18 @@ def packings_of(pairs: pd.DataFrame) -> str:
 
 
 def where_it_lies(found: Crossing, rows: pd.DataFrame) -> str:
-    """Return in words where a ratio passes one; rows: of `comparison`, of one candidate, a scale each."""
+    """Return in words where a ratio passes one; rows: of `comparison`, of one candidate, a scale each.
+
+    Where forms leave an end open, a scale whose own interval tells a side closes it.
+    """
     if not math.isnan(found.low):
-        least, most = rows["particle_scale"].min(), rows["particle_scale"].max()
-        low = f"{found.low:.3g}" if math.isfinite(found.low) else f"below {least:g}"
-        return f"{low} to {found.high:.3g}" if math.isfinite(found.high) else f"{low} to beyond {most:g}"
+        of = rows["particle_scale"]
+        less, more = of[rows["ratio_high"] < 1.0].max(), of[rows["ratio_low"] > 1.0].min()
+        below = f"below {of.min():g}" if math.isnan(less) else f"{less:g}"
+        beyond = f"beyond {of.max():g}" if math.isnan(more) else f"{more:g}"
+        low = f"{found.low:.3g}" if math.isfinite(found.low) else below
+        high = f"{found.high:.3g}" if math.isfinite(found.high) else beyond
+        return f"{low} to {high}"
     known, single = rows[rows["ratio_low"].notna()], rows[rows["ratio_low"].isna()]
     told = known["particle_scale"]
     by_one = "".join(

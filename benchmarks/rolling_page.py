@@ -197,9 +197,11 @@ def beside_the_source(found: pd.DataFrame, further: Sequence[str]) -> list[str]:
         "## Nearest to what the source simulated",
         "\n".join(map(bullet, (*(nearest(table, response) for response in responses), *trends, *further))),
         prose(
-            "The source simulated these pairs of frictions itself (Yan 2022, Tables 3.3, 3.5 and 3.6), with a code of"
-            f" whose rolling model it says no more than type A. The particles here are {scale:g} times as large, and"
-            " the opening of the draw-down test is an assumption, a slot: the discharge time tells of that first."
+            "The source simulated these pairs of frictions itself (Yan 2022, Tables 3.3, 3.5 and 3.6). It prints the"
+            " law of type A, a constant torque against the relative spin (Equation 3.3), as `cdt` has it; whether its"
+            " code ran that one or one of its own two it does not say. The particles here are"
+            f" {scale:g} times as large, and the opening of the draw-down test is an assumption, a slot: the discharge"
+            " time tells of that first."
             " Compared are the pairs that were simulated under every model of a response. Low and high: 95 % interval"
             " of the mean difference over packings; told from the nearest: where the 95 % interval of the difference to"
             f" that model's mean does not hold 0. {time_steps_said()}"

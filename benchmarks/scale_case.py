@@ -60,7 +60,8 @@ CANDIDATES: dict[str, Candidate] = {
         {"solver": {"rolling_friction": "cdt"}},
         OPEN,
         "rolling friction against the spin of a particle relative to its neighbour (`cdt`, type A), instead of its own"
-        " (`own_spin`), the standard model of the source's code, which does not say which of its models ran",
+        " (`own_spin`): the law of type A that the source prints (Equation 3.3); its code offers two others, of which"
+        " `own_spin` is the standard one, and which of them ran it does not say",
     ),
     "rolling as rvd": Candidate(
         {"solver": {"rolling_friction": "rvd"}},
@@ -83,7 +84,7 @@ CANDIDATES: dict[str, Candidate] = {
             "solver": {"rolling_friction": "rvd", "rayleigh_fraction": 0.1},
         },
         NUMERICAL,
-        "both, with 0.1 of the Rayleigh time instead of 0.4, as long a step as is [shown](time_step_limits_results.md)",
+        "both, with 0.1 of the Rayleigh time instead of 0.4: [what a step changes](time_step_limits_results.md)",
     ),
     "one size, rolling on relative spin, time step 0.1": Candidate(
         {
@@ -91,7 +92,7 @@ CANDIDATES: dict[str, Candidate] = {
             "solver": {"rolling_friction": "cdt", "rayleigh_fraction": 0.1},
         },
         NUMERICAL,
-        "both, with 0.1 of the Rayleigh time instead of 0.4, as long a step as is shown: the torque of `cdt` knows it",
+        "both, with 0.1 of the Rayleigh time instead of 0.4: the torque of `cdt` knows the step",
     ),
     "one size, rolling on relative spin, time step 5e-6 s": Candidate(
         {

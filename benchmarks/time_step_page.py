@@ -37,18 +37,28 @@ def answers(table: pd.DataFrame) -> Answers:
 
 def longest(found: pd.DataFrame) -> float:
     """Return the longest time step (-) whose change is shown to be within the limit, where of no shorter one the
-    opposite is shown and none failed; NaN where too few packings ran or one of the shortest failed.
+    opposite is shown and none failed; NaN where there is none but the shortest, with which the others are compared.
 
     found: of `answers`
     """
-    if len(found) < 2 or (found["runs"] + found["failed"]).min() < ENOUGH:
-        return math.nan
     allowed = ~found["verdict"].isin([BEYOND, FAILED]).cummax()
-    return float(found.loc[allowed & (found["verdict"] == WITHIN), "value"].max())
+    within = found.loc[allowed & (found["verdict"] == WITHIN), "value"]
+    return float(within.max()) if compared(found) and len(within) > 1 else math.nan
+
+
+def compared(found: pd.DataFrame) -> bool:
+    """Return whether enough packings of every time step have run, all of the shortest one to their end.
+
+    found: of `answers`
+    """
+    enough = len(found) > 1 and (found["runs"] + found["failed"]).min() >= ENOUGH
+    return bool(enough and found["verdict"].iloc[0] == WITHIN)
 
 
 def limits(found: Answers) -> pd.DataFrame:
-    """Return a row per model: the longest time step (-) by surface and response, and the shortest of them."""
+    """Return a row per model: the longest time step (-) by surface and response, and the shortest of them, NaN where
+    one of them has none.
+    """
     rows = []
     for model in dict.fromkeys(key[0] for key in found):
         own = {
@@ -75,22 +85,22 @@ def said_of(model: str, found: Answers, row: pd.Series) -> str:
     """Return in a sentence how long a time step may be under a model; row: of `limits`."""
     own, limit = [told for key, told in found.items() if key[0] == model], row["all of them"]
     shortest = min(told["value"].min() for told in own)
-    if math.isnan(limit):
+    if not all(map(compared, own)):
         return (
             f"`{model}`: not known, fewer than {ENOUGH} packings of every time step have run, or a shortest one failed"
         )
-    if limit > shortest:
+    if not math.isnan(limit):
         return (
             f"`{model}`: at {limit:g} of the Rayleigh time all is within {PERCENT * LIMIT:g} % with 95 % confidence,"
             " and no shorter step is shown to be beyond"
         )
-    shown = row.drop(["model", "all of them"])
-    shown = ", ".join(f"of {name} up to {value:g}" for name, value in shown.items() if value > shortest) or "of nothing"
+    shown = row.drop(["model", "all of them"]).dropna()
+    shown = ", ".join(f"of {name} up to {value:g}" for name, value in shown.items()) or "of nothing"
     widest = max(((told["change_high"] - told["change_low"]) / 2.0).max() for told in own)
     return (
-        f"`{model}`: that all stays within {PERCENT * LIMIT:g} % is shown of no step longer than {shortest:g} of the"
-        f" Rayleigh time; {shown}. Intervals reach {PERCENT * widest:.0f} % to either side: what is undecided takes"
-        " more packings"
+        f"`{model}`: no step longer than {shortest:g} of the Rayleigh time, with which all are compared, is shown to"
+        f" keep all within {PERCENT * LIMIT:g} % of it; shown is that {shown}. Intervals reach {PERCENT * widest:.0f} %"
+        " to either side: what is undecided takes more packings"
     )
 
 
@@ -109,10 +119,10 @@ def results_page(table: pd.DataFrame) -> str:
             f"A bed of some {first['particles']:.0f} particles of {CASE['particle_scale']:g} times the real size slides"
             f" at {VELOCITY:g} m/s over {first['travel_m']:g} m of channel, over a plain sample and over a convex one,"
             " whose front ends particles strike. Sliding work is what Archard's law is proportional to, impact energy"
-            " what laws of impacts are. Change: against the shortest time step that ran, packings taken as blocks. A"
-            " limit is the longest step that is shown to be within, where no shorter one is shown to be beyond; of"
-            " shorter ones with few packings more is not known. It is told where every time step ran with"
-            f" {ENOUGH} packings at least."
+            " what laws of impacts are. Change: against the shortest time step that ran, packings taken as blocks; how"
+            " far that one is from still shorter ones is not known. A limit is the longest step that is shown to be"
+            " within, where no shorter one is shown to be beyond; of shorter ones with few packings more is not known."
+            f" It is told where every time step ran with {ENOUGH} packings at least."
         ),
         markdown(told),
         prose(f"Processor time of the solver at equal time steps, over `{first['model']}`: {cost}; not run in turn."),

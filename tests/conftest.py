@@ -25,6 +25,8 @@ LONGEST_FIRST = (  # measured on two cores: a quarter of a minute to one each
     "workflows/test_project.py",
     "test_chains.py",
     "engine/test_cycles.py",
+    "engine/test_killed_runs.py",
+    "engine/test_reused_cycles.py",
     "test_solver_ledger_ranks.py",
     "test_read.py",
     "report/test_accessibility.py",

@@ -307,6 +307,14 @@ def test_an_open_end_is_told_with_its_side(low, high, ends, words):
     assert where_it_lies(found, table_of({REFERENCE: ends})) == words
 
 
+def test_an_open_end_is_closed_by_a_scale_that_tells_a_side():
+    """The convex sample wears less at 4 and more at 8 by their intervals: it cannot pass one beyond them."""
+    found = Crossing(np.nan, -np.inf, np.inf, np.nan, np.nan, 3, 3, 2, "")
+    table = table_of({REFERENCE: (0.5, 2.0)})
+    table["ratio_low"], table["ratio_high"] = [0.5, 1.1], [0.9, 2.0]
+    assert where_it_lies(found, table) == "4 to 8"
+
+
 def test_a_scale_of_one_packing_decides_nothing():
     """The convex sample wears more at 8; what one packing has at 4 is told and counts for nothing."""
     found = Crossing(np.nan, np.nan, np.nan, np.nan, np.nan, 3, 3, 2, "none between the places")

@@ -57,7 +57,7 @@ def test_the_critical_scale_and_what_bumps_do_to_a_bed():
     assert f"it wears within {alike} % alike from scale 3 to 12" in page
     assert f"under a force that grows by {100.0 * (force[-1] / force[0] - 1.0):.0f} %" in page
     forms = rows("particle_size_results_standard.md", "form", "crossing")
-    assert (forms["rejected"] == "no").sum() == 1 and "which leaves one form of its curve" in page
+    assert (forms["rejected"] == "no").sum() == 1 and "after which only one form of the curve fits;" in page
     next_best = forms[forms["rejected"] == "yes"].set_index("form").astype({"p value": float})["p value"]
     crossing = forms.set_index("form").loc[next_best.idxmax(), ["crossing", "interval low", "interval high"]]
     words = "a parabola of the ratio, {:.1f} ({:.1f} to {:.1f}), is only just rejected".format(*map(float, crossing))
@@ -66,7 +66,10 @@ def test_the_critical_scale_and_what_bumps_do_to_a_bed():
         re.search(r"(\d+ of \d+) windows are steady", told(f"particle_size_results_{each}.md"))[1]
         for each in ("quick", "standard")
     ]
-    assert "criterion {} of its windows are steady at quick and {} at standard".format(*windows) in page
+    assert "criterion {} of its windows are steady at quick and {} at standard, none".format(*windows) in page
+    for each in ("quick", "standard"):
+        found = table(f"tables/particle_size_{each}_steady_by_scale.csv").query("measure == 'relative_wear_rate'")
+        assert not found.loc[found["run"].str.contains("convex"), "steady"].any()
 
 
 def test_how_loose_coarse_beds_lie():
@@ -104,11 +107,11 @@ def test_why_the_critical_scale_differs():
     where = critical.set_index("candidate")["where"]
     assert where["one size of particles"].startswith("below 4, if anywhere") and (alone > 1.0).all()
     assert where["one size, rolling as rvd"].startswith("below 3, if anywhere") and "is below 3, if it has one." in page
-    for_study = where["the study with the source's pair"].removesuffix(" to beyond 8")
-    assert f"bring it from {float(for_study):.1f} or beyond to" in page and "none or one below 4. With" in page
+    ends = "{:.1f} to {:g}".format(*map(float, where[REFERENCE].split(" to ")))
+    assert f"bring it from {ends} down to" in page and "none or one below 4. With" in page
     of_cdt = where["one size, rolling on relative spin"].removesuffix(" to beyond 8")
     words = f"hangs on the time step: {float(of_cdt):.1f} or beyond with 0.4 of the Rayleigh time, between 3 and 5 with"
-    assert words in page
+    assert words in page and "in one packing, the convex sample wears more at 4, 6 and 8." in page
     spin = "one size, rolling on relative spin"
     assert where[f"{spin}, time step 0.1"].startswith("between 3 and 5, each by its own packings; no form tried")
     by_step = [
@@ -195,6 +198,8 @@ def test_how_the_studys_curve_lies_to_the_sources():
     assert f"is {min(half):.2f} to {max(half):.2f} of the source's, and" in page
     assert f"wears {base.min():.3f} to {base.max():.3f} of the plain sample" in page
     assert f"source's lines {min(of_source):.3f} to {max(of_source):.3f}:" in page
+    words = re.findall(r"the bumps would have to wear ([\d.]+) times", told("critical_scale_results.md"))
+    assert f"would have to wear {words[0]} (scale 3, one packing) to {words[-1]} times (scale 8)" in page
     relative = parts[parts.index.get_level_values("candidate").str.contains("relative")]["base over plain"].astype(
         float
     )
@@ -214,16 +219,15 @@ def test_how_the_studys_curve_lies_to_the_sources():
     told_where = critical_scales().loc["sizes 0.88 to 1.12", ["critical scale", "where"]]
     ends = "{:.1f} to {:.1f}".format(*map(float, told_where["where"].split(" to ")))
     assert f"critical scale {float(told_where['critical scale']):.1f} ({ends}), the nearest" in page
-    low = critical_scales().loc[REFERENCE, "where"].removesuffix(" to beyond 8")
     single = ratios.xs("sizes 0.88 to 1.12", level="candidate")["packings"]
     assert single.tolist() == ["1", "2", "2", "2"] and "leans on scale 3 with its one packing" in page
-    assert f"from {float(low):.1f} or beyond to {float(told_where['critical scale']):.1f}. With one" in page
+    assert f"down to {float(told_where['critical scale']):.1f}. With one" in page
     assert (
         f"deviation would be {DEVIATION:.3f} of the median" in page
         and f"{1.0 - APART:g}, 1 and {1.0 + APART:g} the" in page
     )
     assert f"1.2 of it, have {0.2 * 0.5**0.5:.3f}." in page
-    assert f"that it prints have {float(told_where['critical scale']):.1f}" in known_causes()
+    assert f"as narrow as that share have {float(told_where['critical scale']):.1f}" in known_causes()
     standing = number(parts, "sample 5 mm above the floor", "velocity percent plain")["6"]
     assert f"floor it is {standing:.0f} % (scale 6" in page
     runs = table("critical_scale.csv").query("particle_scale == 6 and surface == 'plain'").groupby("candidate")
@@ -241,7 +245,7 @@ def test_what_the_path_of_the_centres_would_make():
     assert "at scale 8 {} instead of {}, under `cdt` {} instead of {}, with".format(*study, *spin) in page
     assert "Rayleigh time) {} instead of {}, by".format(*both) in page
     largest = told_of["centres over contacts, convex"] / told_of["centres over contacts, plain"]
-    assert f"(path_of_centres.csv): up to {largest.max():.2f} times, where" in page
+    assert f"(path_of_centres.csv). That is up to {largest.max():.2f} times as large;" in page
 
 
 def test_how_far_friction_alone_takes_a_bed_along():
@@ -279,4 +283,5 @@ def test_the_table_of_a_constant_torque():
     cells = " | ".join(f"{each:.2f}" for each in ratios[short].max())
     assert f"the step of the source's bulk tests | {cells} |" in page
     lower, upper = ratios.loc[0.23, [4, 6]]
-    assert f"is {4.0 + 2.0 * (1.0 - lower) / (upper - lower):.1f} with 0.23" in page
+    assert lower < 1.0 < upper and "With 0.23 the side changes between 4 and 6, with 5e-6 s the" in page
+    assert (ratios[short].max() > 1.0).all() and "wears more at all three." in page

@@ -10,7 +10,7 @@ from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.report.laws import what_wears
 from tests.support.law_cases import OKA
 from tests.support.tiny import tiny_chain, tiny_study
-from tests.workflows.engine.test_cycles import twin
+from tests.support.tiny_runs import twin
 
 pytestmark = pytest.mark.solver
 

@@ -17,9 +17,9 @@ from bulkwear.workflows.engine.pieces import PIECES
 from bulkwear.workflows.engine.project import Project
 from bulkwear.workflows.engine.solver import DECK
 from bulkwear.workflows.environment.doctor import MPI_PROBE_DECK
+from tests.support.killed import solver_processes
 from tests.support.slurm import Slurm, missing_cgroups, missing_programs
 from tests.support.tiny import tiny_chain
-from tests.workflows.engine.test_cycles import solver_processes
 from tests.workflows.test_snakemake import REPOSITORY, TINY, workspace
 
 ABSENT = missing_programs()

@@ -87,4 +87,5 @@ def prediction_note(rows: Sequence[Foreseen], error: float) -> str:
     if any(row.found.packings < 2 for row in rows):
         alone = "the coefficient's part alone" if error > 0.0 else "no interval"
         said.append(f"{UNKNOWN.capitalize()}: {alone}.")
-    return " ".join([*said, "A shape that wears changes its own rate; that is not in it."])
+    said.append("The deepest place is one triangle, so how deep hangs on their size; that is not in it.")
+    return " ".join([*said, "Nor is that a shape that wears changes its own rate."])

@@ -141,7 +141,8 @@ def packings_light(design: pd.DataFrame) -> Light:
     counts = design.groupby("setting")["packing"].nunique().tolist() if "packing" in design else [1]
     state = SOUND if min(counts) >= ENOUGH_PACKINGS else CARE if min(counts) > 1 else WEAK
     said = f"{range_text(counts)} random packing{'s' * (max(counts) > 1)} of each setting"
-    return Light("Replicated", state, f"{said}{', the scatter is unknown' if min(counts) < 2 else ''}.")
+    unknown = ", the scatter is unknown" if max(counts) < 2 else ", the scatter is unknown of those with one"
+    return Light("Replicated", state, f"{said}{unknown if min(counts) < 2 else ''}.")
 
 
 def scale_light(study: Mapping[str, Any]) -> Light:

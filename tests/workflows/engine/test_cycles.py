@@ -1,43 +1,31 @@
-"""The driver on the real solver: what a cycle leaves, what is checked, and what a killed run keeps."""
+"""The driver on the real solver: what a cycle leaves, and what is checked."""
 
 import json
 import os
-import pickle
 import re
 import shutil
-import signal
-import subprocess
-import sys
-import time
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from bulkwear.postproc.mesh import areas, read_surface, stl_corners
-from bulkwear.postproc.readers.load_ledger import LoadLedgerError
 from bulkwear.postproc.tables.law_volumes import WornBy, law_measures, maps_of_cycles
-from bulkwear.postproc.tables.summary import run_summary
 from bulkwear.postproc.wear.balance import BALANCE_TOLERANCE
 from bulkwear.workflows.engine import cycles, state, wear_step
-from bulkwear.workflows.engine.accounting import HISTORY, LEDGER, account, account_and_wear
-from bulkwear.workflows.engine.case import FORCES
 from bulkwear.workflows.engine.chain import Chain, write_cycle, write_shared_files
 from bulkwear.workflows.engine.derived import law_volume
-from bulkwear.workflows.engine.inputs import inputs_digest, run_digest
+from bulkwear.workflows.engine.inputs import inputs_digest
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.ledgers import PRODUCERS
 from bulkwear.workflows.engine.machine import interpreter, machine_facts
-from bulkwear.workflows.engine.pieces import PIECES
 from bulkwear.workflows.engine.provenance import PROVENANCE, PROVENANCE_FILE, simulating_code
 from bulkwear.workflows.engine.schedule import first_span
 from bulkwear.workflows.engine.solver import SEARCHES, SolverError
-from tests import REPOSITORY
-from tests.support.patience import LONGEST_S
 from tests.support.stl import stl_facets
 from tests.support.tiny import tiny_chain, tiny_study
+from tests.support.tiny_runs import LOOKS, SHORT_STEPS, first_ledger, twin, wear_cycles, wear_table
 
 pytestmark = pytest.mark.solver
 
@@ -53,25 +41,7 @@ VELOCITY = 1.0  # m/s, of the demo's row
 # part of the normal force (seen 0.0035, 0.0011 and 0.015).
 DUMP_TOLERANCES = {"normal_impulse_N_s": 0.02, "sliding_work_J": 0.02, "rolling_work_J": 0.05}
 FINNIE_TOLERANCE = 1e-6  # of the largest triangle; the solver's file has six digits
-# Relative, of totals: what chaos makes of them (seen 0.013). Finnie's wear hangs on few impacts (seen 0.05); half of it
-# would be lost, were it not in the restart file.
-PIECES_TOLERANCES = {"sliding_work_J": 2e-2, "normal_impulse_N_s": 2e-2, "contact_time_s": 2e-2, "finnie_wear": 0.2}
-SHORT_STEPS = {"rayleigh_fraction": 0.2}  # where forces that are evaluated once more are compared
-LOOKS = {"wear_interval_mm": 2, "picture_interval_mm": 1}
 FASTEST, SLOWEST = 1e-8, 1e-3  # s of a processor per particle step; seen 1e-6, of few particles more
-DRIVER = """
-import pickle, sys
-from bulkwear.workflows.engine.cycles import run_chain
-run_chain(pickle.load(open(sys.argv[1], "rb")))
-"""
-
-
-@pytest.fixture(scope="module")
-def finished(tmp_path_factory):
-    """An undisturbed run of the convex sample."""
-    chain = tiny_chain(tiny_study(), tmp_path_factory.mktemp("undisturbed"))
-    cycles.run_chain(chain)
-    return chain
 
 
 @pytest.fixture(scope="module")
@@ -82,22 +52,6 @@ def looked_into(finished):
     chain = replace(twin(finished, folder), parameters=study.run(finished.name).parameters)
     cycles.run_chain(chain)
     return chain
-
-
-def twin(chain, folder: Path):
-    """The same run elsewhere, nothing of it done yet."""
-    copy = folder / chain.name
-    copy.mkdir(parents=True)
-    shutil.copy(chain.surface, copy / "surface.vtu")
-    return replace(chain, folder=copy, surface=copy / "surface.vtu")
-
-
-def wear_cycles(chain) -> int:
-    return chain.parameters["sliding"]["cycles"]
-
-
-def wear_table(chain) -> pd.DataFrame:
-    return pd.read_csv(chain.folder / "wear.csv")
 
 
 def test_every_cycle_leaves_its_contract(finished):
@@ -280,19 +234,6 @@ def test_a_part_that_is_worn_through(finished, tmp_path, capsys, then):
     assert np.nanmin(surface.point_data["remaining_thickness_m"]) == 0.0  # the holder has none
 
 
-def first_ledger(chain, finished) -> pd.DataFrame:
-    """Ledger of a chain's first wear cycle, from the restart file of the undisturbed run."""
-    shutil.copytree(state.cycle_folder(finished.folder, 0), state.cycle_folder(chain.folder, 0))
-    folder = state.cycle_folder(chain.folder, 1)
-    folder.mkdir()
-    surface = read_surface(chain.surface)
-    write_shared_files(chain)
-    span = first_span(chain.parameters)
-    write_cycle(chain, span, folder, surface)
-    cycles.simulate(chain, span, folder, {f"sample_{span.cycle}": len(surface.triangles)}, Progress(chain.name, 1))
-    return account(chain, span, folder, chain.case.pieces(chain.parameters, span, surface))
-
-
 def test_two_ranks_write_the_same_ledger(finished, tmp_path):
     """Under MPI every contact is counted once: from the same restart, two ranks account the same sums as one."""
     found = first_ledger(replace(twin(finished, tmp_path), ranks=2), finished)
@@ -366,180 +307,6 @@ def test_other_rolling_friction_runs(tmp_path, rolling_friction):
     assert wear_table(chain)["sliding_work_J"].iloc[0] > 0
 
 
-# ---------------------------------------------------------------- killed and started again
-
-
-def start_driver(chain, folder: Path) -> subprocess.Popen:
-    task = folder / "chain.pickle"
-    task.write_bytes(pickle.dumps(chain))
-    return subprocess.Popen([sys.executable, "-c", DRIVER, str(task)], cwd=REPOSITORY)
-
-
-def kill_when(process: subprocess.Popen, moment) -> None:
-    """SIGKILL the driver at a moment, and wait until its solver is gone too."""
-    deadline = time.monotonic() + LONGEST_S
-    while not moment():
-        assert process.poll() is None, "the driver ended before the moment to kill it"
-        assert time.monotonic() < deadline, "the moment to kill the driver never came"
-        time.sleep(0.01)
-    os.kill(process.pid, signal.SIGKILL)
-    process.wait()
-
-
-def solver_processes(folder: Path) -> list[int]:
-    """Process ids of solvers that work below a folder."""
-    found = []
-    for entry in Path("/proc").iterdir():
-        try:
-            if entry.name.isdigit() and str(folder) in os.readlink(entry / "cwd"):
-                found.append(int(entry.name))
-        except OSError:
-            continue
-    return found
-
-
-def wait_until_no_solver(folder: Path) -> None:
-    deadline = time.monotonic() + LONGEST_S
-    while solver_processes(folder):
-        assert time.monotonic() < deadline, "a solver outlived its driver"
-        time.sleep(0.05)
-
-
-MOMENTS = {
-    "while the bed is lowered": lambda run: (run / "cycle_000.part" / "screen.txt").exists(),
-    "while cycle 1 is simulated": lambda run: (run / "cycle_001.part" / "bed_0.dump").exists(),
-    "while cycle 1 is accounted": lambda run: (run / "cycle_001.part" / "run.restart").exists(),
-    "while cycle 2 is simulated": lambda run: (run / "cycle_002.part" / "screen.txt").exists(),
-}
-
-
-# Moments of the same kind as another one that is tried.
-SELDOM = {
-    "while the bed is lowered",
-    "while cycle 1 is simulated",
-    "while cycle 1 is accounted",
-    "after the first piece of the run-in",
-}
-
-
-def without_seldom(moments):
-    """Parameters: those of SELDOM for `make verify` alone."""
-    return [pytest.param(each, marks=pytest.mark.verify) if each in SELDOM else each for each in moments]
-
-
-@pytest.mark.parametrize("moment", without_seldom(MOMENTS))
-def test_killed_and_started_again_gives_the_same_tables(finished, tmp_path, moment):
-    """kill -9 at any moment, start again: the same wear.csv and summary, finished cycles untouched, no orphan."""
-    chain = twin(finished, tmp_path)
-    kill_when(start_driver(chain, tmp_path), lambda: MOMENTS[moment](chain.folder))
-    wait_until_no_solver(tmp_path)
-    done = {path: path.stat().st_mtime_ns for path in chain.folder.glob("cycle_???/*")}
-    cycles.run_chain(chain)
-    assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
-    assert run_summary(wear_table(chain)) == run_summary(wear_table(finished))
-    assert {path: path.stat().st_mtime_ns for path in done} == done
-
-
-@pytest.fixture(scope="module")
-def in_pieces(tmp_path_factory):
-    """An undisturbed run of one wear cycle whose simulation is started anew every few hundred steps."""
-    changes = {"solver": {**LOOKS, "checkpoint_interval_steps": 125}, "sliding": {"cycles": 1}}
-    chain = tiny_chain(tiny_study(**changes), tmp_path_factory.mktemp("pieces"))
-    cycles.run_chain(chain)
-    return chain
-
-
-def pieces_done(folder: Path) -> list[dict[str, float]]:
-    """The finished pieces of a cycle that is being worked on."""
-    return json.loads((folder / PIECES).read_text())["pieces"] if (folder / PIECES).exists() else []
-
-
-MOMENTS_IN_PIECES = {
-    "after the first piece of the run-in": ("cycle_000.part", 1, "lowering and run-in"),
-    "after the third piece of cycle 1": ("cycle_001.part", 3, "cycle 1 of 1"),
-}
-
-
-@pytest.mark.verify
-@pytest.mark.parametrize("moment", without_seldom(MOMENTS_IN_PIECES))
-def test_killed_within_a_cycle_it_goes_on_from_its_newest_piece(in_pieces, tmp_path, capfd, moment):
-    """kill -9 within a cycle and a second start: no finished piece is simulated again, and ledger, forces, history and
-    tables are bit for bit those of the undisturbed run."""
-    folder, count, title = MOMENTS_IN_PIECES[moment]
-    chain = twin(in_pieces, tmp_path)
-    kill_when(start_driver(chain, tmp_path), lambda: len(pieces_done(chain.folder / folder)) >= count)
-    wait_until_no_solver(tmp_path)
-    begun = pieces_done(chain.folder / folder)[-1]["end"]
-    capfd.readouterr()
-    cycles.run_chain(chain)
-    assert f"{chain.name}: {title} goes on after step {begun}" in capfd.readouterr().err
-    for name in ("wear.csv", *(f"cycle_001/{each}" for each in (LEDGER, FORCES, HISTORY, "run.restart"))):
-        assert (chain.folder / name).read_bytes() == (in_pieces.folder / name).read_bytes(), name
-    left = {path.name for path in state.cycle_folder(chain.folder, 1).iterdir()}
-    assert left == {path.name for path in state.cycle_folder(in_pieces.folder, 1).iterdir()}
-    assert not [name for name in left if name.startswith(("piece", "checkpoint"))]
-
-
-@pytest.mark.verify
-def test_a_fault_while_a_cycle_is_accounted_costs_no_simulation(in_pieces, tmp_path, monkeypatch):
-    """What ends the driver between the last piece and the state of a cycle: the next start accounts the cycle again,
-    without the solver, and leaves what the undisturbed run left."""
-    chain = twin(in_pieces, tmp_path)
-
-    def ended(*given):
-        account_and_wear(*given)
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as first, pytest.raises(KeyboardInterrupt):
-        first.setattr(cycles, "account_and_wear", ended)
-        cycles.run_chain(chain)
-    monkeypatch.setattr(cycles, "run_deck", lambda *given, **named: pytest.fail("the solver was started"))
-    cycles.run_chain(chain)
-    for name in ("wear.csv", *(f"cycle_001/{each}" for each in (LEDGER, FORCES, HISTORY, "run.restart"))):
-        assert (chain.folder / name).read_bytes() == (in_pieces.folder / name).read_bytes(), name
-    flows = [pd.read_parquet(run.folder / "cycle_001" / "flow.parquet") for run in (chain, in_pieces)]
-    pd.testing.assert_frame_equal(*flows, check_exact=True)
-    left, expected = ({path.name for path in (run.folder / "cycle_001").iterdir()} for run in (chain, in_pieces))
-    assert left == expected
-
-
-@pytest.mark.verify
-def test_a_simulation_in_pieces_is_the_simulation(tmp_path):
-    """From the same restart, a cycle in pieces has the ledger of the whole one, Finnie's wear and history included.
-
-    The solver evaluates forces once more at each start, and chaos lets that grow over some hundred steps.
-    """
-    whole = tiny_chain(tiny_study(solver=LOOKS | SHORT_STEPS), tmp_path / "whole")
-    cycles.run_chain(whole)
-    chain = twin(whole, tmp_path)
-    solver = {**chain.parameters["solver"], "checkpoint_interval_steps": 250}
-    found = first_ledger(replace(chain, parameters={**chain.parameters, "solver": solver}), whole)
-    expected = pd.read_parquet(state.cycle_folder(whole.folder, 1) / LEDGER)
-    for field, tolerance in PIECES_TOLERANCES.items():
-        assert found[field].sum() == pytest.approx(expected[field].sum(), rel=tolerance), field
-    looks = pd.read_csv(state.cycle_folder(whole.folder, 1) / HISTORY)
-    assert len(list(state.cycle_folder(chain.folder, 1).glob("load_ledger.bin.*"))) == len(looks) - 1
-
-
-def test_a_finished_run_is_not_done_again(finished):
-    """Started once more, a finished run only writes its tables."""
-    before = {path: path.stat().st_mtime_ns for path in finished.folder.glob("cycle_???/*")}
-    cycles.run_chain(finished)
-    assert {path: path.stat().st_mtime_ns for path in finished.folder.glob("cycle_???/*")} == before
-
-
-def test_the_same_simulation_is_run_once(finished, tmp_path, monkeypatch):
-    """A run with the inputs of a finished one gets its tables and its surface without the solver, at no cost."""
-    monkeypatch.setattr(cycles, "run_deck", lambda *given, **named: pytest.fail("the solver was called"))
-    chain = replace(twin(finished, tmp_path), name="R1_convex", same_as=finished.folder)
-    cycles.run_chain(chain)
-    for name in ("wear.csv", "worn_surface.vtu"):
-        assert (chain.folder / name).read_bytes() == (finished.folder / name).read_bytes()
-    cost, paid = (pd.read_csv(folder / "cost.csv") for folder in (chain.folder, finished.folder))
-    assert not cost[["solver_s", "other_s", cycles.OWN_TIME]].any(axis=None)
-    assert paid["solver_s"].all() and cost["particles"].equals(paid["particles"])
-
-
 def test_what_the_driver_takes_itself_is_told(finished, tmp_path):
     """Its processor time of each cycle, no more than the clock's but for what libraries do side by side; nothing of a
     cycle that an earlier version left.
@@ -554,87 +321,6 @@ def test_what_the_driver_takes_itself_is_told(finished, tmp_path):
     cycles.write_products(chain, len(told))
     again = pd.read_csv(chain.folder / "cost.csv")
     assert again[cycles.OWN_TIME].isna().tolist() == [True, *[False] * (len(told) - 1)]
-
-
-def test_changed_inputs_are_not_reused_and_nothing_is_lost(finished, tmp_path):
-    """Another wear coefficient: cycles are done again, the old ones are kept and come back with the old inputs."""
-    chain = twin(finished, tmp_path)
-    copy_cycles(finished, chain)
-    doubled = replace(
-        chain,
-        parameters={**chain.parameters, "wear": {**chain.parameters["wear"], "gap_closing_fraction": 0.1}},
-    )
-    cycles.run_chain(doubled)
-    assert (chain.folder / "wear.csv").read_bytes() != (finished.folder / "wear.csv").read_bytes()
-    assert len(list(chain.folder.glob("superseded/*/cycle_???"))) == wear_cycles(chain) + 1
-    old = (state.cycle_folder(finished.folder, 1) / "log.liggghts").read_bytes()
-    cycles.run_chain(chain)
-    assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
-    assert (state.cycle_folder(chain.folder, 1) / "log.liggghts").read_bytes() == old
-
-
-def copy_cycles(source, target) -> None:
-    for cycle in range(wear_cycles(source) + 1):
-        shutil.copytree(state.cycle_folder(source.folder, cycle), state.cycle_folder(target.folder, cycle))
-
-
-def test_a_damaged_cycle_is_done_again(finished, tmp_path):
-    """A restart file that changed after its state was written does not count: its cycle is simulated again."""
-    chain = twin(finished, tmp_path)
-    copy_cycles(finished, chain)
-    inputs = inputs_digest(chain)
-    assert state.finished_cycles(chain.folder, inputs) == wear_cycles(chain) + 1
-    with open(state.cycle_folder(chain.folder, 1) / "run.restart", "ab") as restart:
-        restart.write(b"damage")
-    assert state.finished_cycles(chain.folder, inputs) == 1
-    cycles.run_chain(chain)
-    assert state.finished_cycles(chain.folder, inputs) == wear_cycles(chain) + 1
-    assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
-
-
-def test_a_cycle_with_a_cut_restart_file_is_done_again(finished, tmp_path, capfd):
-    """A restart file that was cut by a full disk, under a state that says it is as it was: the run falls back by
-    itself, and says so."""
-    chain = twin(finished, tmp_path)
-    copy_cycles(finished, chain)
-    folder = state.cycle_folder(chain.folder, wear_cycles(chain))
-    record = state.read_state(chain.folder, wear_cycles(chain))
-    os.truncate(folder / "run.restart", 4096)
-    state.write_state(folder, record.pop("inputs"), tuple(record.pop("files")), record)
-    cycles.run_chain(chain)
-    said = capfd.readouterr().err
-    assert f"{folder / 'run.restart'}: the restart file of 4096 bytes is not whole" in said
-    assert f"{folder.name} is made again" in said
-    assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
-
-
-@pytest.mark.parametrize(
-    ("kept", "finished_cycles", "there"),
-    [("few", 4, {0, 2, 3}), ("few", 24, {0, 10, 20, 22, 23}), ("few", 2, {0, 1}), ("all", 24, set(range(24)))],
-)
-def test_restart_files_that_no_resume_needs_go(tmp_path, kept, finished_cycles, there):
-    """Those of cycle 0, of every tenth cycle and of the last two stay, or all; states of the others do without."""
-    study = tiny_study(solver={"kept_restarts": kept})
-    chain = Chain("R9_convex", tmp_path, study.case, study.run("R9_convex").parameters, tmp_path / "surface.vtu")
-    for cycle in range(finished_cycles):
-        folder = state.cycle_folder(tmp_path, cycle)
-        folder.mkdir()
-        for name in ("run.restart", "surface.vtu"):
-            (folder / name).write_text(name)
-        state.write_state(folder, "same", ("run.restart", "surface.vtu"), {})
-    for count in range(1, finished_cycles + 1):
-        cycles.drop_restarts(chain, count)
-    folders = {cycle: state.cycle_folder(tmp_path, cycle) for cycle in range(finished_cycles)}
-    assert {cycle for cycle, folder in folders.items() if (folder / "run.restart").exists()} == there
-    assert state.finished_cycles(tmp_path, "same", ("run.restart", "surface.vtu")) == finished_cycles
-    (folders[finished_cycles - 1] / "run.restart").write_text("damage")
-    assert state.finished_cycles(tmp_path, "same", ("run.restart", "surface.vtu")) == finished_cycles - 1
-
-
-@pytest.mark.parametrize(("setting", "values"), [("kept_restarts", ("few", "all")), ("search", SEARCHES)])
-def test_what_changes_no_number_changes_no_input(setting, values):
-    """Neither which restart files are kept nor who searches is a reason to simulate again."""
-    assert len({inputs_of(tiny_study(solver={setting: value})) for value in values}) == 1
 
 
 @pytest.mark.parametrize("search", SEARCHES)
@@ -656,64 +342,6 @@ def test_the_study_says_who_searches(tmp_path, monkeypatch, search):
     assert asked == [search, search]
 
 
-def inputs_of(study):
-    return run_digest(study.case, study.run("R9_convex").parameters, study.beds[study.bed_of("R9_convex")])
-
-
-@pytest.mark.verify
-def test_a_cycle_whose_ledger_cannot_be_read_is_simulated_again(in_pieces, tmp_path, monkeypatch):
-    """What the solver left half is not accounted for ever: the next start simulates the cycle, to the same end."""
-    chain = twin(in_pieces, tmp_path)
-
-    def cut(chain, span, folder, surface):
-        os.truncate(folder / "load_ledger.bin", 100)
-        return account_and_wear(chain, span, folder, surface)
-
-    with monkeypatch.context() as first, pytest.raises(LoadLedgerError, match=r"simulates cycle 1 of 1 again"):
-        first.setattr(cycles, "account_and_wear", cut)
-        cycles.run_chain(chain)
-    assert not pieces_done(chain.folder / "cycle_001.part")
-    cycles.run_chain(chain)
-    assert (chain.folder / "wear.csv").read_bytes() == (in_pieces.folder / "wear.csv").read_bytes()
-
-
-def test_a_kill_while_cycles_are_moved_loses_nothing(finished, tmp_path, monkeypatch):
-    """Interrupted between two moves, the next start moves the rest: old cycles are whole in superseded/."""
-    chain = twin(finished, tmp_path)
-    copy_cycles(finished, chain)
-    moves = []
-
-    def move_once(source, target):
-        if moves:
-            raise KeyboardInterrupt
-        moves.append(source)
-        Path(source).rename(target)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(state.os, "replace", move_once)
-        with pytest.raises(KeyboardInterrupt):
-            state.set_aside_others(chain.folder, "f" * 64)
-    state.set_aside_others(chain.folder, "f" * 64)
-    kept = sorted(path.name for path in chain.folder.glob("superseded/*/cycle_*"))
-    assert kept == [f"cycle_{cycle:03d}" for cycle in range(wear_cycles(chain) + 1)]
-
-
-def test_a_failed_solver_shows_its_last_words_and_the_run_resumes(finished, tmp_path, monkeypatch):
-    """The message has the cause and the solver's own lines; finished cycles stay, and without the fault they go on."""
-    chain = twin(finished, tmp_path)
-    with monkeypatch.context() as broken:
-        broken.setattr("bulkwear.workflows.engine.chain.RESTART", "no_such.restart")
-        with pytest.raises(
-            SolverError, match=r"cycle_001\.part/deck\.in: LIGGGHTS stopped: .*open restart file"
-        ) as fault:
-            cycles.run_chain(chain)
-    assert "Its last lines" in str(fault.value) and "ERROR" in str(fault.value)
-    done = (state.cycle_folder(chain.folder, 0) / "state.json").stat().st_mtime_ns
-    cycles.run_chain(chain)
-    assert (state.cycle_folder(chain.folder, 0) / "state.json").stat().st_mtime_ns == done
-    assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
-
-
 def test_missing_triangles_stop_the_run(finished, tmp_path):
     """A surface of which the solver drops a triangle ends the run with both counts."""
     chain = twin(finished, tmp_path)
@@ -727,32 +355,3 @@ def test_missing_triangles_stop_the_run(finished, tmp_path):
     count = len(surface.triangles)
     with pytest.raises(SolverError, match=re.escape(f"keeps {count} of the {count + 1} triangles of mesh sample_1")):
         cycles.simulate(chain, span, folder, {f"sample_{span.cycle}": count + 1}, Progress("test", 1))
-
-
-@pytest.mark.verify
-def test_a_second_driver_waits_for_the_first(finished, tmp_path):
-    """Two drivers of one run do the work once: the second waits, says for whom, and finds everything finished."""
-    chain = twin(finished, tmp_path)
-    for cycle in (0, 1):  # the last one is left to be simulated
-        shutil.copytree(state.cycle_folder(finished.folder, cycle), state.cycle_folder(chain.folder, cycle))
-    first = start_driver(chain, tmp_path)
-    lock = chain.folder / ".lock"
-    while not (lock.exists() and lock.read_text()):
-        time.sleep(0.01)
-    first.send_signal(signal.SIGSTOP)  # until the second one waits, however slowly it starts
-    with open(tmp_path / "second.txt", "w+") as said:
-        command = [sys.executable, "-c", DRIVER, str(tmp_path / "chain.pickle")]
-        second = subprocess.Popen(command, cwd=REPOSITORY, stderr=said)
-        while second.poll() is None and "waiting" not in (tmp_path / "second.txt").read_text():
-            time.sleep(0.05)
-        first.send_signal(signal.SIGCONT)
-        assert (first.wait(), second.wait()) == (0, 0)
-    told = (tmp_path / "second.txt").read_text()
-    assert f"process {first.pid} works on {chain.folder}; waiting for it to end" in told
-    assert "cycle 1" not in told
-    assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
-
-
-def test_more_ranks_are_the_same_run(finished):
-    """Ranks change the time a run takes, not what it is: its cycles stay valid."""
-    assert inputs_digest(replace(finished, ranks=4)) == inputs_digest(finished)

@@ -1,4 +1,4 @@
-"""Cycles of other inputs are kept aside; the solver's part is in test_cycles.py."""
+"""Cycles of other inputs are kept aside; the solver's part is in test_reused_cycles.py."""
 
 import pytest
 

@@ -7,7 +7,7 @@ import pytest
 from bulkwear.postproc.statistics.steady import DRIFTING, FEWEST_VALUES, STEADY, UNSAID
 from bulkwear.workflows.report import verdict
 from bulkwear.workflows.report.sections import CARE, SOUND, WEAK
-from bulkwear.workflows.report.time_step import SHOWN, time_step_light
+from bulkwear.workflows.report.time_step import time_step_light
 
 
 @pytest.mark.parametrize(
@@ -77,10 +77,11 @@ def test_a_time_step_beyond_what_is_shown_calls_for_care():
 
     def light(*solvers):
         runs = [{"rolling_friction": model, "rayleigh_fraction": fraction} for model, fraction in solvers]
-        return time_step_light({"parameters": {str(number): {"solver": run} for number, run in enumerate(runs)}})
+        study = {"parameters": {str(number): {"solver": run} for number, run in enumerate(runs)}}
+        return time_step_light(study, {"own_spin": 0.2, "cdt": 0.3})
 
-    assert light(("own_spin", 0.05), ("own_spin", SHOWN["own_spin"])).state == SOUND
+    assert light(("own_spin", 0.05), ("own_spin", 0.2)).state == SOUND
     found = light(("own_spin", 0.1), ("cdt", 0.05), ("cdt", 0.4))
-    assert found.state == CARE and "0.4 of the Rayleigh time under cdt, shown up to 0.1" in found.said
+    assert found.state == CARE and "0.4 of the Rayleigh time under cdt, shown up to 0.3" in found.said
     assert "own_spin" not in found.said
-    assert "under off, of which no limit is known" in light(("off", 0.1)).said
+    assert "under off, of which no limit is shown" in light(("off", 0.1)).said

@@ -36,7 +36,7 @@ ALONG = {  # bed.ends -> what it makes of the packing along the travel
     PERIODIC: " and along it, so that it passes the sample again and again",
     WINDOW: " and along it: the same packing comes again, undisturbed, after each length of the window",
 }
-BEYOND_BUMPS = "particles scaled beyond the size of the bumps, over which they ride (Yan 2022, Fig 4.17)"
+BEYOND_BUMPS = "particles scaled beyond the size of the bumps, which by the source ride over them (Yan 2022, Fig 4.17)"
 MOST_NAMED = 4  # rows that a remark on every figure names; of more it says how many, the table of runs has them
 FIGURES_OF_ALL = {  # of every study, by section
     "Where and when it wears": (
@@ -263,10 +263,15 @@ def _particles(study: Mapping[str, Any]) -> str:
     moduli = range_text([particle["shear_modulus_pa"] for particle in particles])
     return (
         f"{_shapes(particles)} of {min(diameters):.3g} to {max(diameters):.3g} mm in diameter, {scale} times the real "
-        f"ones, in {len(particles[0]['diameters_m'])} sizes. {_sizes(particles)}{_stands_for_shape(particles, study)} "
+        f"ones, in {_number_of_sizes(particles[0])}. {_sizes(particles)}{_stands_for_shape(particles, study)} "
         f"{friction_between(particles)} Contacts are "
         f"softened: shear modulus {moduli} Pa."
     )
+
+
+def _number_of_sizes(particle: Mapping[str, Any]) -> str:
+    count = len(particle["diameters_m"])
+    return f"{count} sizes" if count > 1 else "one size"
 
 
 def _sizes(particles: Sequence[Mapping[str, Any]]) -> str:

@@ -22,8 +22,8 @@ from bulkwear.workflows.engine.inputs import inputs_digest
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.schedule import known_spans
 from tests import DATA, REPOSITORY
+from tests.support.killed import kill_when, start_driver, wait_until_no_solver
 from tests.support.stl import stl_facets
-from tests.workflows.engine.test_cycles import kill_when, start_driver, wait_until_no_solver
 
 GOLDEN = DATA / "golden_pin_on_disc.in"
 TINY = {  # two revolutions of a small disc in four cycles, 30 times the coefficient: a groove that is felt

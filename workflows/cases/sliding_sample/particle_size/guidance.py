@@ -219,9 +219,9 @@ def guidance_table(
     patterns, scales: by design row of a sample with bumps; lines: as for `published_line`; wear: particle_scale and
     relative_wear of every patterned run of the study
     Columns row, major_radius_m, minor_radius_m and height_m of the bump, median_diameter_m of real particles, those of
-    `guidance`, particle_scale, within_largest_scale, and wear at that scale over that at real size, with 95 %
-    intervals: own_bias, own_bias_low and own_bias_high by the study's own line, extended to real size from
-    own_line_from_scale; published_bias, published_bias_low and published_bias_high by the source's.
+    `guidance`, particle_scale, within_largest_scale, and two ratios with 95 % intervals: own_bias, own_bias_low and
+    own_bias_high, wear at that scale over that at own_line_from_scale, the study's smallest, by its own line, which is
+    not extended; published_bias, published_bias_low and published_bias_high, over that at real size, by the source's.
     """
     own = own_line(wear["particle_scale"].to_numpy(dtype=float), wear["relative_wear"].to_numpy(dtype=float))
     rows = [
@@ -232,7 +232,7 @@ def guidance_table(
             **(told := guidance(pattern, particles)),
             "particle_scale": scales[row],
             "within_largest_scale": scales[row] < told["largest_scale"],
-            **_named("own_bias", line_ratio(own, scales[row], 1.0) if own else (np.nan,) * 3),
+            **_named("own_bias", line_ratio(own, scales[row], own.scales[0]) if own else (np.nan,) * 3),
             "own_line_from_scale": own.scales[0] if own else np.nan,
             **_named("published_bias", published_bias(pattern, particles, scales[row], lines)),
         }

@@ -199,12 +199,11 @@ def guidance(study: Mapping[str, Any], folder: Path) -> list[Block]:
         Text(
             "Is the pattern expected to help, and how far may a study of it be coarse-grained? First the ratios of real"
             " particle to bump (Yan 2022, Eq 4.18 to 4.21): the pattern is expected to help where that of the"
-            " equivalent radius is below 1, which it reaches at the largest scale. Bias: wear of the patterned sample"
-            " at the scale simulated over that at real size, with its 95 % interval, by a straight line. The own one is"
-            " this study's, extended to real size from its smallest scale, and is not told where the scatter of"
-            " packings rejects a line; the published one is the source's (Eq 4.15),"
-            " if particle over bump is all that matters. The own one says what this study's wear is worth. Then the"
-            " ratios of the particles simulated."
+            " equivalent radius is below 1, which it reaches at the largest scale. Bias: how many times a finer bed's"
+            " wear that of the patterned sample is, by a straight line, with its 95 % interval. The published one is"
+            " the source's (Eq 4.15), over wear at real size, if particle over bump is all that matters. The own one is"
+            " this study's, over wear at its smallest scale: below that it tells nothing, nor where the scatter of"
+            " packings rejects a line. Then the ratios of the particles simulated."
         ),
         Table(table, "guidance"),
         Table(pd.DataFrame(ratios), "size_ratios"),

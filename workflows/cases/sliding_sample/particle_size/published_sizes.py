@@ -180,7 +180,9 @@ def critical_sentences(critical: Crossing, published: float, ratios: pd.DataFram
     if outside and curve == CONVEX:
         said.append(
             "What differs from the source, and a difference may come from: the size distribution, of which the source"
-            " gives the median only; how bumps are turned, which its text leaves open; and the ramp round the sample."
+            " tells the median and the share below 2 mm in numbers; friction between particles; the rolling model and"
+            " the time step, of which it does not say which its sliding samples had; how bumps are turned, which its"
+            " text leaves open; and the ramp round the sample."
         )
     return said
 

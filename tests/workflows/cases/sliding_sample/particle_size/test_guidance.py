@@ -162,5 +162,8 @@ def test_the_table_has_a_row_for_each_pattern():
     assert list(table["row"]) == ["R5", "small"]
     assert list(table["within_largest_scale"]) == [True, False]
     assert table["published_bias"].notna().all() and (table["own_line_from_scale"] == 2.0).all()
-    assert (table["own_bias_low"] < table["own_bias"]).all() and (table["own_bias"] < table["own_bias_high"]).all()
+    assert (table["own_bias"] == 1.0).all()
+    larger = guidance_table(patterns, GRAVEL, {"R5": 4.0, "small": 4.0}, LINES, wear)
+    assert (larger["own_bias"] - 0.48 / 0.37).abs().max() < 0.01
+    assert (larger["own_bias_low"] < larger["own_bias"]).all() and (larger["own_bias"] < larger["own_bias_high"]).all()
     assert guidance_table(patterns, GRAVEL, {"R5": 2.0, "small": 2.0}, LINES, wear[:2])["own_bias"].isna().all()
