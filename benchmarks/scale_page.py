@@ -165,8 +165,8 @@ def results_page(table: pd.DataFrame, critical: pd.DataFrame, runs: pd.DataFrame
         prose(
             "Wear per metre of travel, and its two parts over the plain sample's. Force: mean normal force, convex over"
             " plain. Slip: sliding work per metre over the mean normal force, which is the velocity at the contacts"
-            " over the sample's, in %: no change of the flow can raise it above 100 %. Velocity: of the particles over"
-            " the sample, in % of the sample's; the source has 40 to 45 % (convex) and 10 to 15 % (plain)."
+            " over the sample's, spin included, in %. Velocity: of the particles over the sample, in % of the sample's;"
+            " the source has about 45 % at scale 5 and 40 % at 8 (convex), and 10 to 15 % (plain)."
             f" Processor: the solver's processor time over that of {REFERENCE}; machines are never quite idle."
         ),
         markdown(table[[*names, *parts_of]]),

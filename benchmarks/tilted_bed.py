@@ -130,7 +130,9 @@ def means(runs: pd.DataFrame) -> dict[str, Estimate]:
 def creep_table(runs: pd.DataFrame) -> pd.DataFrame:
     """Return a row per model: its mean creep (mm/s), and that of the slowest and the fastest packing."""
     creep = runs.groupby("model", sort=False)["creep_mm_per_s"]
-    return creep.agg(packings="count", creep_mm_per_s="mean", slowest="min", fastest="max").reset_index()
+    return creep.agg(
+        packings="count", creep_mm_per_s="mean", slowest_mm_per_s="min", fastest_mm_per_s="max"
+    ).reset_index()
 
 
 def summary(runs: pd.DataFrame) -> pd.DataFrame:
@@ -138,10 +140,11 @@ def summary(runs: pd.DataFrame) -> pd.DataFrame:
     rows, found = [], angles(runs)
     for model, mean in means(runs).items():
         low, high = mean.interval()
-        rows.append({"model": model, "packings": mean.packings, "flow_angle_deg": mean.value, "low": low, "high": high})
+        rows.append({"model": model, "packings": mean.packings, "flow_angle_deg": mean.value})
+        rows[-1] |= {"low_deg": low, "high_deg": high}
         if REFERENCE in found and model != REFERENCE:
             apart = less(found[model], found[REFERENCE])
-            ends = dict(zip(("less_low", "less_high"), apart.interval(), strict=True))
+            ends = dict(zip(("less_low_deg", "less_high_deg"), apart.interval(), strict=True))
             rows[-1] |= {"less_reference_deg": apart.value, **ends}
     return pd.DataFrame(rows)
 

@@ -298,12 +298,12 @@ def table_of(ends):
         (-np.inf, 6.0, (0.5, 2.0), "below 4 to 6"),
         (np.nan, np.nan, (0.5, 0.9), "above 8, if anywhere: the convex sample wears less from 4 on"),
         (np.nan, np.nan, (1.1, 2.0), "below 4, if anywhere: the convex sample wears more up to 8"),
-        (np.nan, np.nan, (0.9, 1.1), "not told: none between the places"),
+        (np.nan, np.nan, (0.9, 1.1), "not told: none between the smallest and the largest"),
     ],
 )
 def test_an_open_end_is_told_with_its_side(low, high, ends, words):
     """An end beyond the scales, and no crossing at all, say on which side of them it would be."""
-    found = Crossing(np.nan, low, high, np.nan, np.nan, 3, 3, 2, "none between the places" if np.isnan(low) else "")
+    found = Crossing(np.nan, low, high, np.nan, np.nan, 3, 3, 2, "none between the smallest and the largest" if np.isnan(low) else "")
     assert where_it_lies(found, table_of({REFERENCE: ends})) == words
 
 
@@ -317,7 +317,7 @@ def test_an_open_end_is_closed_by_a_scale_that_tells_a_side():
 
 def test_a_scale_of_one_packing_decides_nothing():
     """The convex sample wears more at 8; what one packing has at 4 is told and counts for nothing."""
-    found = Crossing(np.nan, np.nan, np.nan, np.nan, np.nan, 3, 3, 2, "none between the places")
+    found = Crossing(np.nan, np.nan, np.nan, np.nan, np.nan, 3, 3, 2, "none between the smallest and the largest")
     table = table_of({REFERENCE: (1.1, 2.0)})
     table.loc[0, ["ratio_low", "ratio_high"]] = np.nan
     said = "below 8, if anywhere: the convex sample wears more up to 8; in one packing at 4 it wears"
@@ -325,7 +325,7 @@ def test_a_scale_of_one_packing_decides_nothing():
     table.loc[0, "wear_over_plain"] = 0.9
     assert where_it_lies(found, table) == f"{said} less"
     table["ratio_low"] = np.nan
-    assert where_it_lies(found, table) == "not told: none between the places"
+    assert where_it_lies(found, table) == "not told: none between the smallest and the largest"
 
 
 def test_where_no_form_fits_two_scales_tell_it():

@@ -187,7 +187,9 @@ def test_creep_is_how_fast_the_layer_moves_before_without_slips(tmp_path):
     trace = written_trace(tmp_path / "tilt.txt", [21.0, 22.0, 23.0, 26.0, 30.0], [0.001, 0.05, 0.0012, 0.08, 0.2])
     assert measured(trace, GRAIN, TILT)["creep_mm_per_s"] == pytest.approx(1.2)
     told = creep_table(made_up()).set_index("model").loc["cdt"]
-    assert (told["creep_mm_per_s"], told["slowest"], told["fastest"]) == pytest.approx((0.6, 0.36, 0.84))
+    assert (told["creep_mm_per_s"], told["slowest_mm_per_s"], told["fastest_mm_per_s"]) == pytest.approx(
+        (0.6, 0.36, 0.84)
+    )
 
 
 def test_intervals_are_over_packings():
@@ -196,13 +198,13 @@ def test_intervals_are_over_packings():
     table = summary(made_up()).set_index("model")
     error = np.std(SPREAD, ddof=1) / math.sqrt(len(SPREAD))
     assert table.loc["cdt", "flow_angle_deg"] == pytest.approx(35.0)
-    assert table.loc["cdt", "high"] - 35.0 == pytest.approx(STUDENT_95_4 * error, rel=1e-4)
+    assert table.loc["cdt", "high_deg"] - 35.0 == pytest.approx(STUDENT_95_4 * error, rel=1e-4)
     assert table.loc["cdt", "less_reference_deg"] == pytest.approx(-3.0)
-    assert [table.loc["cdt", name] for name in ("less_low", "less_high")] == pytest.approx([-3.0, -3.0])
+    assert [table.loc["cdt", name] for name in ("less_low_deg", "less_high_deg")] == pytest.approx([-3.0, -3.0])
     apart = made_up().assign(packing=lambda runs: runs["packing"] + 10 * (runs["model"] == "cdt"))
     reach = STUDENT_95_8 * math.sqrt(2.0) * error
     found = summary(apart).set_index("model").loc["cdt"]
-    assert [found["less_low"], found["less_high"]] == pytest.approx([-3.0 - reach, -3.0 + reach], rel=1e-4)
+    assert [found["less_low_deg"], found["less_high_deg"]] == pytest.approx([-3.0 - reach, -3.0 + reach], rel=1e-4)
     assert np.isnan(table.loc[REFERENCE, "less_reference_deg"])
 
 

@@ -47,7 +47,9 @@ def _short(section: Section, blocks: Sequence[Block], docs: Path, name: str, pub
     for index, block in enumerate(blocks):
         if elsewhere and block is elsewhere[0]:
             ours = f"[Published numbers beside ours]({PUBLISHED_PAGE}), with verdicts"
-            yield Text(f"{ours}: {sum(len(each.data) for each in elsewhere)} ([table]({published_file(published)})).")
+            yield Text(
+                f"{ours}: {sum(len(each.data) for each in elsewhere)} ([all of the page]({published_file(published)}))."
+            )
         elif any(block is each for each in elsewhere):
             continue
         elif isinstance(block, Table) and len(block.data) > MOST_ROWS:

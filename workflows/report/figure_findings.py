@@ -128,6 +128,8 @@ def steepest_map(maps: pd.DataFrame) -> str:
         law: area_quantile(faces["relative_depth"].to_numpy(), faces["area_mm2"].to_numpy(), MOST_WORN)
         for law, faces in maps.groupby("law", sort=False)
     }
+    if not any(tops.values()):
+        return f"Less than {PERCENT * (1.0 - MOST_WORN):.0f} % of the area wears."
     said = listed([f"{top:.2g} by {spoken(law)}" for law, top in tops.items()])
     return f"The most worn hundredth of the area is worn by this many times the mean or more: {said}."
 

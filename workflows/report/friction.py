@@ -22,6 +22,7 @@ from bulkwear.workflows.report.sections import CARE, SOUND, WEAK, Light
 
 # -, of friction's work over Coulomb limit times sliding work: 0.92 to 1 in chutes, beds and a screw, 0.64 to 0.7 in a
 # mill, where shorter time steps change nothing; 0.16 in the mill at a step that makes sliding work 3.6 times as large
+ALMOST_ALL = 0.995  # -, a share beyond which rounding would say all
 LEAST_SHARE = 0.5
 LEAST_OF_PART = 0.01  # -, of what sliding at its limit would do in a run: a part with less tells nothing of it
 LEDGER, SURFACE = "ledger.parquet", "surface.vtu"
@@ -74,7 +75,8 @@ def friction_light(study: Mapping[str, Any], folder: Path) -> Light:
         return Light(what, CARE, "Nothing slid, or no ledger is left.")
     run, share = min(known.items(), key=lambda pair: pair[1])
     if share >= LEAST_SHARE:
-        return Light(what, SOUND, f"Friction does {PERCENT * share:.0f} % or more of what sliding at its limit would.")
+        least = f"{PERCENT * share:.0f} % or more" if share < ALMOST_ALL else f"more than {PERCENT * ALMOST_ALL:g} %"
+        return Light(what, SOUND, f"Friction does {least} of what sliding at its limit would.")
     return Light(
         what,
         WEAK,

@@ -17,6 +17,7 @@ from bulkwear.workflows.report.sections import Block, Points, Table
 from bulkwear.workflows.report.sentences import PERCENT, capital
 
 RESPONSE, REASON = "response", "reason"
+WIDEST = 0.8  # -, interval of a share of the variance beyond which it tells nothing
 HEADS = {
     "first": ("alone", "-"),
     "first_low": ("alone, from", "-"),
@@ -65,12 +66,18 @@ def finding(table: pd.DataFrame) -> str:
         if len(known) > 1 and (known["total"] > 0.0).sum() == 1:
             said.append(f"Of {response} the model holds {most['factor']} alone, so that there are no shares to tell.")
             continue
-        ends = f"95 % interval {PERCENT * most['first_low']:.0f} to {PERCENT * most['first_high']:.0f} %"
+        ends = f"{PERCENT * most['first_low']:.0f} to {PERCENT * most['first_high']:.0f} %"
+        if most["first_high"] - most["first_low"] > WIDEST:
+            said.append(
+                f"Which factor decides {response} cannot be said: {most['factor']} alone makes {ends} of its variance"
+                " (95 % interval)."
+            )
+            continue
         together = PERCENT * max(1.0 - known["first"].sum(), 0.0)
         said.append(
             f"Of the variance of {response} over the design {most['factor']} alone makes"
-            f" {PERCENT * most['first']:.0f} % ({ends}), with its interactions {PERCENT * most['total']:.0f} %; factors"
-            f" together make {together:.0f} %."
+            f" {PERCENT * most['first']:.0f} % (95 % interval {ends}), with its interactions"
+            f" {PERCENT * most['total']:.0f} %; factors together make {together:.0f} %."
         )
     return capital(" ".join(said))
 

@@ -86,7 +86,7 @@ def test_nothing_is_extended_beyond_the_places():
     """A ratio that stays below has no crossing; one whose interval reaches the last place has an open end."""
     low = PLACES < 8.0
     found = crossing(np.repeat([2.0, 3.0, 4.0], 3), scattered(line, 4, np.repeat([2.0, 3.0, 4.0], 3)))
-    assert found.reason == "none between the places" and math.isnan(found.value)
+    assert found.reason == "none between the smallest and the largest" and math.isnan(found.value)
     assert crossing(PLACES[low], line(PLACES[low])).reason.startswith("2 places")
     near = np.repeat([6.0, 7.0, 8.0, 8.6], 3)
     assert crossing(near, scattered(line, 5, near)).high == math.inf

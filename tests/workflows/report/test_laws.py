@@ -124,6 +124,8 @@ def test_maps_of_all_laws_have_one_scale():
     assert [axes.get_title() for axes in figure.axes[:2]] == ["archard", "tangential work"]
     assert figure.axes[-1].get_xlim()[1] == pytest.approx(count)
     assert "1 by archard" in steepest_map(map_table("A", maps))
+    spot = map_table("A", maps).assign(relative_depth=0.0)
+    assert steepest_map(spot) == "Less than 1 % of the area wears."
     assert law_pictures([], []).axes == []
 
 

@@ -104,5 +104,5 @@ def run_ins(points: pd.DataFrame) -> list[str]:
                 f" {row.run} (95 % interval {ends}, of this run)."
             )
         else:
-            said.append(f"The volume that a revolution removes in {row.run}: {row.answer}.")
+            said.append(f"The run-in of the volume that a revolution removes, {row.run}: {row.answer}.")
     return said

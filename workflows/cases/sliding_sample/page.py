@@ -259,7 +259,7 @@ def _particles(study: Mapping[str, Any]) -> str:
     """Return what the particles are made simpler in; ranges where the runs differ."""
     particles = [run["particle"] for run in study["parameters"].values()]
     diameters = [1e3 * diameter for particle in particles for diameter in particle["diameters_m"]]
-    scale = range_text([particle["scale"] for particle in particles])
+    scale = range_text([particle["scale"] for particle in particles], 3)
     moduli = range_text([particle["shear_modulus_pa"] for particle in particles])
     return (
         f"{_shapes(particles)} of {min(diameters):.3g} to {max(diameters):.3g} mm in diameter, {scale} times the real "

@@ -63,7 +63,7 @@ def test_run_ins_of_the_volume():
         "The volume that a revolution removes is level from revolution 3 on in c50 (95 % interval 2 to 5, of this run)."
     ]
     (said,) = answers.run_ins(points.head(1).assign(answer=UNSAID))
-    assert said == "The volume that a revolution removes in c50: cannot be said."
+    assert said == "The run-in of the volume that a revolution removes, c50: cannot be said."
 
 
 def test_answers_are_of_the_figures_that_a_study_has(pins, figures, tmp_path):

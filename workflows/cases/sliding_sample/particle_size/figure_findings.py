@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import pandas as pd
 
+from bulkwear.postproc.flow.packing import inner_means
 from bulkwear.workflows.report.sentences import PERCENT, listed, measured, spoken, with_interval
 from bulkwear.workflows.report.text import number, range_text
 
 SPIN = "averaged_angular_velocity_deg_per_s"
 PEAKS = ["overlap", "normal_force", "tangential_force", "spin"]
+WALLS = 2  # slabs of a container that are left out, at its floor and at its top
 EXACT = 1e-5  # -, below which a difference is that of the digits that are kept
 STATES = {"loose": "filled", "dense": "shaken", "before": "before the sample", "after": "behind it"}
 
@@ -95,12 +97,10 @@ def packing(table: pd.DataFrame) -> str:
     """Return contacts and porosity by state over the particle scales; table: of containers or of beds."""
     said = []
     for state, rows in table[table["state"].isin(list(STATES))].groupby("state", sort=False):
-        inner = (
-            rows[(rows["layer"] > rows["layer"].min()) & (rows["layer"] < rows["layer"].max())]
-            if "layer" in rows
-            else rows
-        )
-        means = (rows if inner.empty else inner).groupby("particle_scale")[["coordination_number", "porosity"]].mean()
+        of_scales = rows.groupby("particle_scale")
+        slabs = "layer" in rows and of_scales.size().min() > WALLS
+        means = pd.DataFrame([inner_means(of) for _, of in of_scales]) if slabs else of_scales.mean(numeric_only=True)
+        means = means[["coordination_number", "porosity"]]
         contacts, pores = (range_text(means[name].dropna().tolist() or [float("nan")], 3) for name in means)
         said.append(f"{STATES[str(state)]} {contacts} contacts and a porosity of {pores}")
     return f"Over the particle scales particles have {'; '.join(said)}." if said else ""

@@ -166,8 +166,10 @@ def _lowest(evidence: Evidence, best: str, regime: str) -> Found:
     rows = evidence.rows_in(regime, without=[best])
     if best not in evidence.regimes:
         return Found(reason=f"{best} has no result")
-    if evidence.regimes[best] != regime or not rows:
-        return Found(reason=f"{best} is not found to flow in the {regime} regime, or no other row does")
+    if evidence.regimes[best] != regime:
+        return Found(reason=f"{best} is not found to flow in the {regime} regime")
+    if not rows:
+        return Found(reason=f"no other row is found to flow in the {regime} regime")
     pairs = {row: evidence.by_packing("wear_rate", [row, best]) for row in rows}
     named = {row: estimate(both[row] / both[best], log=True) for row, both in pairs.items()}
     return Found(named, [best, *rows], of=_all(evidence))

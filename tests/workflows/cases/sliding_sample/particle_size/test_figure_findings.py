@@ -61,8 +61,12 @@ def test_packings_without_their_first_and_last_slab():
         "layer": [1, 2, 3],
         "coordination_number": [0.0, 6.0, 0.0],
         "porosity": [0.9, 0.4, 0.9],
+        "porosity_whole_particles": [0.9, 0.4, 0.9],
+        "particles": 10,
     }
-    table = pd.DataFrame(slabs | {"state": "loose"})
+    higher = {"particle_scale": 1.0, "layer": [1, 2, 3, 4], "coordination_number": [0.0, 6.0, 6.0, 0.0]}
+    higher |= {"porosity": [0.9, 0.4, 0.4, 0.9], "porosity_whole_particles": 0.4, "particles": 10}
+    table = pd.concat([pd.DataFrame(higher), pd.DataFrame(slabs)]).assign(state="loose")
     said = "Over the particle scales particles have filled 6 contacts and a porosity of 0.4"
     assert findings.packing(pd.concat([table, table.assign(state="difference")])) == f"{said}."
     beds = pd.DataFrame(SCALES | {"state": ["before", "after"], "coordination_number": [4.0, 5.0], "porosity": 0.45})

@@ -100,7 +100,7 @@ def test_one_packing_has_a_crossing_without_interval():
 def test_no_crossing_is_extended_beyond_the_scales():
     """Convex wear stays below plain: nothing is said of where it would reach it."""
     found, forms = critical_scale(wear_by_scale(summary([1.0, 2.0, 3.0], noise=0.02, packings=3)))
-    assert np.isnan(found.value) and found.reason == "none between the places"
+    assert np.isnan(found.value) and found.reason == "none between the smallest and the largest"
     assert forms["crossing"].isna().all()
 
 

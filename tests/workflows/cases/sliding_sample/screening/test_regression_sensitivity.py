@@ -57,6 +57,9 @@ def test_noise_is_refused(table):
     said = finding(table)
     assert "Of the variance of ln wear per metre over the design t alone makes" in said
     assert f"Of ln wear over plain no index is told: {row['reason']}." in said
+    wide = finding(table.assign(first_low=0.0, first_high=1.0))
+    said = "Which factor decides ln wear per metre cannot be said: t alone makes 0 to 100 % of its variance"
+    assert f"{said} (95 % interval)." in wide
     assert len(sensitivity_bars(table, ["a remark"]).axes) == 2
 
 
