@@ -303,7 +303,9 @@ def table_of(ends):
 )
 def test_an_open_end_is_told_with_its_side(low, high, ends, words):
     """An end beyond the scales, and no crossing at all, say on which side of them it would be."""
-    found = Crossing(np.nan, low, high, np.nan, np.nan, 3, 3, 2, "none between the smallest and the largest" if np.isnan(low) else "")
+    found = Crossing(
+        np.nan, low, high, np.nan, np.nan, 3, 3, 2, "none between the smallest and the largest" if np.isnan(low) else ""
+    )
     assert where_it_lies(found, table_of({REFERENCE: ends})) == words
 
 
