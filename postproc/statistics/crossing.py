@@ -171,7 +171,9 @@ def crossing(place: np.ndarray, ratio: np.ndarray, level: float = 1.0) -> Crossi
         return Crossing(math.nan, math.nan, math.nan, forms=0, reason="no form tried describes the wear", **told)
     ends = kept[["interval_low", "interval_high"]].dropna()
     if ends.empty:
-        return Crossing(math.nan, math.nan, math.nan, forms=len(kept), reason="none between the smallest and the largest", **told)
+        return Crossing(
+            math.nan, math.nan, math.nan, forms=len(kept), reason="none between the smallest and the largest", **told
+        )
     low, high = float(ends["interval_low"].min()), float(ends["interval_high"].max())
     return Crossing(value, low, high, forms=len(kept), **told)
 

@@ -190,8 +190,8 @@ def test_what_else_moves_the_ratio():
     ):
         assert words.format(over.pop(name)) in page
     rest = over[
-        ~over.index.str.startswith(("one size", "rolling as", "rolling on"))
-        & ~over.index.isin([friction, "sizes 0.88 to 1.12"])
+        ~over.index.str.startswith(("one size", "rolling as", "rolling on", "sizes 0.88 to 1.12"))
+        & ~over.index.isin([friction])
     ]
     assert len(rest) == 11 and f"c and d exchanged: {rest.min():.2f} to {rest.max():.2f}." in page
 
@@ -226,6 +226,14 @@ def test_how_the_studys_curve_lies_to_the_sources():
     told_where = critical_scales().loc["sizes 0.88 to 1.12", ["critical scale", "where"]]
     ends = "{:.1f} to {:.1f}".format(*map(float, told_where["where"].split(" to ")))
     assert f"critical scale {float(told_where['critical scale']):.1f} ({ends}), the nearest" in page
+    printed = number(ratios, "sizes 0.88 to 1.12, rolling on relative spin, time step 5e-6 s", "wear over plain")
+    assert printed.index.tolist() == ["6", "8"]
+    of_three = [f"{each:.3g}" for each in (*printed, *number(ratios, REFERENCE, "wear over plain")[["6", "8"]])]
+    assert (
+        "wears {} and {} of the plain one at 6 and 8, in one packing; the study has {} and {},".format(*of_three)
+        in page
+    )
+    assert f"lines {source_ratio(6):.2f} and {source_ratio(8):.2f}. So it is one size" in page
     single = ratios.xs("sizes 0.88 to 1.12", level="candidate")["packings"]
     assert single.tolist() == ["1", "2", "2", "2"] and "leans on scale 3 with its one packing" in page
     assert f"down to {float(told_where['critical scale']):.1f}. With one" in page
