@@ -247,8 +247,8 @@ def remarks(runs: pd.DataFrame, table: pd.DataFrame) -> list[str]:
     packings = table.set_index("candidate")["packings"]
     others = packings.drop(REFERENCE)
     return [
-        "runs of the study particle_size at quick fidelity with the source's pair of frictions, changed as each is named:"
-        " particles at scale"
+        "runs of the study particle_size at quick fidelity with the source's pair of frictions, changed as each is"
+        " named: particles at scale"
         f" {', '.join(f'{scale:g}' for scale in runs['particle_scale'].unique())}, wear over 800 mm of travel after"
         " 500 mm",
         "green line: the source's lines, whose reading of the pattern and whose code are not known",
