@@ -184,3 +184,40 @@ def test_what_the_path_of_the_centres_would_make_of_the_tester():
     assert f"would lose {volume:.0f} mm³ a revolution, published" in page
     assert "and the convex one {:.2f} of it instead of {:.2f}, the source's".format(*ratios) in page
     assert own.max() < 1.02 and "`own_spin` the two are within 2 %." in page
+
+
+def test_what_finer_particles_of_the_tester_do():
+    """Volumes, forces and sliding at particle scales 4 and 6, the experiment, and the heap's weight."""
+    page, results = told("circular_tester.md"), "circular_tester_results_standard.md"
+    runs = rows(results, "run", "series", "surface").set_index("run")
+    volume = runs["lost per revolution mm3"].astype(float).map("{:.1f}".format)
+    assert (
+        "takes {} mm³ off the plain sample at scale 4 and {} at 6, and {} and {} off".format(
+            *volume[["plain", "scale6-plain", "convex", "scale6-convex"]]
+        )
+        in page
+    )
+    force, slides = (
+        runs.loc[["plain", "scale6-plain"], name] for name in ("mean normal force N", "sliding over travel")
+    )
+    assert "bears {} N instead of {} and".format(*force) in page
+    assert f"over {slides.iloc[0]} of the travel instead of {float(slides.iloc[1]):.3f}" in page
+    assert f"it is {slides.iloc[0]}, under a smaller force." in page
+    assert f"slide over {runs.loc['convex', 'sliding over travel']} of the trough's way" in page
+    shares = runs.loc[["convex", "scale6-convex"], "pattern share percent"].astype(float)
+    assert "Its pattern has {:.0f} % of its wear, the source's 56; at scale 6 it is {:.0f} %.".format(*shares) in page
+    lost = rows(results, "hours", "quantity").set_index(["hours", "quantity"])["ours"].astype(float)
+    at_56, at_184 = (lost[(hours, "convex volume")] for hours in ("56", "184"))
+    assert f"has lost {at_56:.0f} mm³ (measured 82.8), after 184 h" in page
+    assert f"are extended, {at_184:.0f} (measured 240.3; quick has" in page
+    assert (
+        f"presses on the pattern {float(runs.loc['convex', 'mean normal force N']) / float(force.iloc[0]):.1f} times"
+        in told(results)
+    )
+    heap = rows(results, "run", "bed", "mass in use kg").set_index("run").loc["plain", "over sample in use mm"]
+    density = float(
+        rows(results, "bed", "settings", "packing")["bulk density found kg per m3"].iloc[0].replace("\u202f", "")
+    )
+    weight = density * 9.81 * 0.1 * 0.1 * float(heap) / 1e3
+    words = f"it is {heap} mm high, weighs {weight:.1f} N at {density:.0f} kg/m³ and presses with {force.iloc[0]}."
+    assert words in page

@@ -59,7 +59,7 @@ NOT_RUN = (
         {"fidelity": "standard", "rows": ["S2"]},
     ),
     NotRun(
-        "circular tester: ring, and particle scales below 6, by the present code",
+        "circular tester: ring, and particle scale 4 over seventeen revolutions with three packings; it has five and one",
         "circular_tester",
         {"fidelity": "standard"},
     ),
