@@ -59,7 +59,8 @@ NOT_RUN = (
         {"fidelity": "standard", "rows": ["S2"]},
     ),
     NotRun(
-        "circular tester: ring, and particle scale 4 over seventeen revolutions with three packings; it has five and one",
+        "circular tester: ring, and particle scale 4 over seventeen revolutions with three packings; it has five and"
+        " one",
         "circular_tester",
         {"fidelity": "standard"},
     ),
