@@ -20,9 +20,9 @@ from bulkwear.postproc.mesh import HOLDER_PART, read_surface
 from bulkwear.postproc.readers.cycle_folders import cycle_folders
 from bulkwear.workflows.report.sections import CARE, SOUND, WEAK, Light
 
+ALMOST_ALL = 0.995  # -, a share beyond which rounding would say all
 # -, of friction's work over Coulomb limit times sliding work: 0.92 to 1 in chutes, beds and a screw, 0.64 to 0.7 in a
 # mill, where shorter time steps change nothing; 0.16 in the mill at a step that makes sliding work 3.6 times as large
-ALMOST_ALL = 0.995  # -, a share beyond which rounding would say all
 LEAST_SHARE = 0.5
 LEAST_OF_PART = 0.01  # -, of what sliding at its limit would do in a run: a part with less tells nothing of it
 LEDGER, SURFACE = "ledger.parquet", "surface.vtu"
