@@ -45,7 +45,8 @@ def as_settings(row: Layer, columns: dict[str, str]) -> Layer:
 
 def check_heard(command: Layer, rows: Sequence[Layer], schema: dict[str, Any]) -> None:
     """Raise ConfigError for a setting of the command line that every row of a design has its own of."""
-    for setting, column in setting_columns(schema).items():
+    named = setting_columns(schema) | {column: column for row in rows for column in row.values if "." in column}
+    for setting, column in named.items():
         path = tuple(setting.split("."))
         if command.holds(path) and rows and all(column in row.values for row in rows):
             raise ConfigError(

@@ -175,3 +175,5 @@ def test_a_setting_that_every_row_has_its_own_of_is_refused_on_the_command_line(
         " particle_scale; allowed is to choose among them (rows), or another design."
     )
     assert load_study("circular_tester", overrides={"particle_scale": 5}).runs
+    with pytest.raises(ConfigError, match=r"parts\.liner\.file changes nothing, for every row of config/designs/chute"):
+        load_study("chute", overrides={"fidelity": "standard", "parts": {"liner": {"file": "nope.step"}}})
