@@ -233,7 +233,7 @@ def test_how_the_studys_curve_lies_to_the_sources():
         "wears {} and {} of the plain one at 6 and 8, in one packing; the study has {} and {},".format(*of_three)
         in page
     )
-    assert f"lines {source_ratio(6):.2f} and {source_ratio(8):.2f}. So it is one size" in page
+    assert f"lines {source_ratio(6):.2f} and {source_ratio(8):.2f}. So far as one packing tells" in page
     single = ratios.xs("sizes 0.88 to 1.12", level="candidate")["packings"]
     assert single.tolist() == ["1", "2", "2", "2"] and "leans on scale 3 with its one packing" in page
     assert f"down to {float(told_where['critical scale']):.1f}. With one" in page
