@@ -16,6 +16,10 @@ endif
 # Pictures come from the software renderer everywhere: the same on every machine, and without X.
 export VTK_DEFAULT_OPENGL_WINDOW ?= vtkOSOpenGLRenderWindow
 
+ifneq ($(shell [[ "$(CORES)" =~ ^[1-9][0-9]*$$ ]] && echo yes),yes)
+$(error CORES is $(CORES), allowed is a whole number above 0)
+endif
+
 PROFILE := workflows/profiles/default
 SNAKEMAKE := .venv/bin/snakemake --workflow-profile $(PROFILE) --cores $(CORES)
 # one file's tests stay on one process (some folders': tests/conftest.py), so that what they share is made once

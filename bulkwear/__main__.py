@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from bulkwear.meshes.own.mesh import OwnMesh
     from bulkwear.meshes.own.solids import RefusedMeshError
+    from bulkwear.postproc.mesh import SurfaceMesh
 
 UNSAFE = r"[^\w.-]+"  # characters of a part's name that are none of a file's
 LENGTHS = "lengths are in the unit of the files"
@@ -131,12 +132,30 @@ def _mesh(given: argparse.Namespace) -> str:
         picture = (given.output or given.files[0]).with_suffix(".fault.png").name
         picture = (given.output.parent if given.output else Path()) / picture
         raise ValueError(f"{fault}. {_drawn(picture, fault)}") from fault
+    _check_reached(given.ball, scale, found.surface)
     stls = _stl_files(given.stl, given.files, found) if given.stl else {}
     if given.output:
         write_surface(given.output, found.surface)
     for path, triangles in stls.items():
         write_stl(path, found.surface.points, triangles)
     return found.text()
+
+
+def _check_reached(balls: list[list[float]], scale: float, surface: SurfaceMesh) -> None:
+    """Raise ValueError for a ball (x, y, z, radius, edge, in the unit of the files) that no triangle reaches into."""
+    import numpy as np
+
+    from bulkwear.postproc.mesh import edge_lengths_per_triangle
+
+    points, longest = surface.points, edge_lengths_per_triangle(surface.points, surface.triangles).max()
+    for ball in balls:
+        away = np.linalg.norm(points - scale * np.array(ball[:3]), axis=1).min() - scale * ball[3]
+        if away > longest:
+            ends = " to ".join(
+                f"({', '.join(f'{x / scale:.4g}' for x in end)})" for end in (points.min(0), points.max(0))
+            )
+            said = " ".join(f"{value:g}" for value in ball)
+            raise ValueError(f"--ball is '{said}', allowed is one that the surface reaches into, which is from {ends}")
 
 
 def _check_written(option: str, path: Path | None, suffix: str, files: list[Path]) -> None:

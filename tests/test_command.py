@@ -85,6 +85,7 @@ def test_a_refused_surface_is_drawn(tmp_path, capsys, monkeypatch):
         (["--unit", "mm", "--edge", "lip=3", "--edge", "lip=3"], "--edge is given twice for part 'lip', the second"),
         (["--unit", "mm", "--edge", "inf"], "target edge of all parts is inf m, allowed is a finite length above 0"),
         (["--unit", "mm", "--ball", "0", "0", "0", "-1", "3"], "the radius of ball 1 is -0.001 m, allowed is a"),
+        (["--unit", "mm", "--ball", "9e3", "0", "0", "9", "3"], "--ball is '9000 0 0 9 3', allowed is one that the"),
         (["--unit", "mm", "--angle", "nan"], "the wanted smallest angle is nan degrees, allowed are 0 to 45"),
     ],
 )

@@ -40,6 +40,8 @@ def entered_project():
         project = enter_project(Path.cwd())
     except ProjectError as fault:
         raise WorkflowError(str(fault)) from None
+    if Path("results").exists() and not Path("results").is_dir():
+        raise WorkflowError("results: found a file, allowed is a folder, or none: what is simulated goes into it.")
     if not GIVEN.target_jobs:
         for sentence in (*project.substitutes(), *project.astray(), *left_out(project)):
             logger.info(sentence)
@@ -70,7 +72,7 @@ def checked_studies(settings, named):
                 check_decks(study)
         return studies
     except (ConfigError, DeckError, ProjectError) as fault:
-        raise WorkflowError(placed(str(fault), NAMING, GIVEN.config or ())) from None
+        raise WorkflowError(placed(str(fault), NAMING, GIVEN.config or (), GIVEN.configfile or ())) from None
 
 
 def check_decks(study):

@@ -78,6 +78,8 @@ def _plane_near_most(points: np.ndarray, generator: np.random.Generator) -> tupl
     corners = points[generator.integers(len(points), size=(PLANES, 3))]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1)
+    if not length.any():
+        raise ValueError("found scanned points in one place or on one line, allowed are points of a surface")
     normal, corners = normal[length > 0.0] / length[length > 0.0, None], corners[length > 0.0]
     away = np.abs(some @ normal.T - (corners[:, 0] * normal).sum(axis=1))
     best = int(np.argmin(np.median(away, axis=0)))

@@ -396,8 +396,8 @@ BAD_ROWS = [
 
 TABLE_HEADER = "row,major_radius_mm,minor_radius_mm,column_spacing_mm,height_mm,velocity_m_per_s,bed_thickness_mm"
 BAD_TABLES = [
-    ("", "config/designs/small.csv: the file is empty, allowed is a header and one row per run."),
-    ("\n \n", "config/designs/small.csv: the file is empty, allowed is a header and one row per run."),
+    ("", "config/designs/small.csv: the file is empty, allowed is a header and one row or more."),
+    ("\n \n", "config/designs/small.csv: the file is empty, allowed is a header and one row or more."),
     (TABLE_HEADER, "config/designs/small.csv: found a header and no rows, allowed is one row or more."),
     (
         "row;height_mm\nR9;6\n",

@@ -273,6 +273,8 @@ def test_one_command_makes_a_project(tmp_path, capsys):
     assert {"demo", "screening", "first"} <= set(said_of(folder, "--list-target-rules").split())
     assert main(["project", str(folder)]) == 1
     assert "there is something in it, allowed is a new or an empty folder" in capsys.readouterr().err
+    assert main(["project", str(tmp_path / "q{8}")]) == 1
+    assert "found a brace in the name of the folder" in capsys.readouterr().err
     assert main(["project", "~no_such_user/new"]) == 1
     assert "~no_such_user is the home of nobody, allowed is another folder" in capsys.readouterr().err
 

@@ -43,7 +43,8 @@ def bounded_text(path: Path, largest: int) -> str:
             raise BoundsError(f"it has {found.st_size} bytes, allowed are at most {largest}")
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise BoundsError(f"byte {error.start} is not UTF-8, allowed is UTF-8 text") from None
+        byte, line = error.object[error.start], error.object.count(b"\n", 0, error.start) + 1
+        raise BoundsError(f"the byte {byte:#04x} is not UTF-8, allowed is UTF-8 text", line) from None
     except (FileNotFoundError, BoundsError):
         raise
     except (OSError, ValueError) as error:

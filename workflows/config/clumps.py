@@ -19,6 +19,7 @@ from bulkwear.workflows.engine.project import current_project
 CLUMPS = "config/clumps"  # folder of project and package
 ROUND = "sphere"  # the shape that needs no table
 SCHEMA = "clump"
+MOST_SPHERES = 50  # of a clump: its volume is measured in 4 s, of 100 in 15
 ROUND_OFF = 1e-9  # relative; spheres that touch as written
 SETTING = "bed.shape"  # that says which clump a bed's particles are
 
@@ -60,6 +61,10 @@ def _clump(path: Path, root: Path, _written: int) -> Clump:
         spheres.append([float(values[name]) for name in schema["required"]])
     if len(spheres) < 2:
         raise ConfigError(f"{source}: found one sphere, allowed are two or more; a sphere is {SETTING}: {ROUND}.")
+    if len(spheres) > MOST_SPHERES:
+        raise ConfigError(
+            f"{source}: found {len(spheres)} spheres, allowed are {MOST_SPHERES}: every job of a study measures them."
+        )
     table = np.array(spheres)
     if len(np.unique(table, axis=0)) < len(table):
         raise ConfigError(f"{source}: found a sphere twice, allowed is each once.")

@@ -22,6 +22,7 @@ from bulkwear.workflows.config.coefficients import (
     with_coefficients,
 )
 from bulkwear.workflows.config.columns import as_settings, check_heard, opened, row_overrides, setting_columns, with_row
+from bulkwear.workflows.config.contact_checks import CONTACT_CHECKS
 from bulkwear.workflows.config.deck_checks import check_own_words, template_faults_told
 from bulkwear.workflows.config.factors import FACTORS, can_tell, factors_of
 from bulkwear.workflows.config.law_settings import check_law, check_volume
@@ -248,7 +249,7 @@ def _checked_run(
     parameters = _placed(stack, case.run_parameters, *given)
     check_run(
         CheckedRun(layers, of_row, row, parameters, columns),
-        (*COMMON_CHECKS, *PIN_RANGE_CHECKS, *case.checks, *LAST_CHECKS),
+        (*COMMON_CHECKS, *CONTACT_CHECKS, *PIN_RANGE_CHECKS, *case.checks, *LAST_CHECKS),
     )
     name = row.values["row"]
     return Run(name=f"{name}_{surface}" if surface else name, row=name, surface=surface, parameters=parameters)

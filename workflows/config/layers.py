@@ -136,7 +136,7 @@ def read_text(path: Path, source: str, largest: int) -> str:
         folder = path.parent
         names = sorted(p.name for p in folder.glob(f"*{path.suffix}")) if folder.is_dir() else []
         raise ConfigError(
-            f"{source}: there is no such file, found in its folder: {', '.join(names) or 'nothing'}."
+            f"{source}: there is no such file, found in its folder: {', '.join(names) or f'no {path.suffix}'}."
         ) from None
     except BoundsError as fault:
         raise ConfigError(f"{_place(source, fault.line)}: {fault}.") from None
@@ -325,8 +325,10 @@ def read_csv_rows(path: Path, root: Path) -> tuple[list[str], list[tuple[int, di
         raise ConfigError(f"{source}, line {reader.line_num}: {error}, allowed is a table of short cells.") from None
     filled = [(line, cells) for line, cells in lines if any(cells)]
     if not filled:
-        raise ConfigError(f"{source}: the file is empty, allowed is a header and one row per run.")
+        raise ConfigError(f"{source}: the file is empty, allowed is a header and one row or more.")
     (header_line, header), rows = filled[0], filled[1:]
+    if header[0].startswith("#"):
+        raise ConfigError(f"{source}, line {header_line}: found a comment, allowed is the header: tables have none.")
     if len(header) == 1 and re.search(r"[;\t]", header[0]):
         raise ConfigError(f"{source}, line {header_line}: found {header[0]!r}, allowed is the comma between columns.")
     for line, cells in filled:

@@ -19,7 +19,7 @@ CALIBRATED_WITH = ("rolling_radius", "rolling_friction")  # settings that a cali
 ROLLING = "particle.contact.rolling_friction"  # the parameter that holds for them alone
 MASS_FRACTION_TOLERANCE = 1e-9  # rounding of a sum of decimal fractions
 SHAPE = "shape"  # of particles: key beside a material's name, and of what it was calibrated for
-MEDIAN_FACTOR = 2.0  # -, within which the classes of a size distribution have their median diameter
+MEDIAN_FACTOR = 1.5  # -, within which the classes of a size distribution have their median, in which layers are counted
 
 
 def check_materials(layers: Sequence[Layer]) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from typing import Any
 
 from bulkwear.postproc.wear.laws import LAWS, Law, Parameter
 from bulkwear.workflows.config.columns import ANY_SETTING
+from bulkwear.workflows.config.contact_checks import CONTACT_CHECKS
 from bulkwear.workflows.config.law_settings import parameters_schema
 from bulkwear.workflows.config.layers import KeyPath, dotted
 from bulkwear.workflows.config.pin_checks import PIN_RANGE_CHECKS
@@ -163,7 +164,7 @@ def readme() -> str:
     """Return the whole page."""
     sections = [f"## {title}\n\nKeys {where}.\n\n{table(name)}\n" for title, name, where in TABLES]
     cases = [section for name in case_names() for section in sections_of_case(name)]
-    common = f"## {CHECKS_TITLE}\n\n{listed((*COMMON_CHECKS, *PIN_RANGE_CHECKS, *LAST_CHECKS))}\n"
+    common = f"## {CHECKS_TITLE}\n\n{listed((*COMMON_CHECKS, *CONTACT_CHECKS, *PIN_RANGE_CHECKS, *LAST_CHECKS))}\n"
     return "\n".join([INTRODUCTION, sections[0], wear_laws(), *sections[1:], common, *cases])
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import operator
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
@@ -16,25 +17,23 @@ from typing import TYPE_CHECKING, Any
 from bulkwear.meshes.lattice import narrowest_gap, pattern_faults
 from bulkwear.workflows.config.layers import ConfigError, Layer
 from bulkwear.workflows.config.patterns import pattern_of
-from bulkwear.workflows.config.schema import load_schema
-from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.validation import allowed_text, files_of, locate, show
-from bulkwear.workflows.engine.templates import solver_settings
 
 if TYPE_CHECKING:
     from bulkwear.workflows.engine.case import Case, Run
 
 Fault = tuple[str, str]  # key at fault (empty: the row as a whole) and what is allowed
 
-CONTACT_MODEL = "_shared/contact_model"  # template
 MOST_STEPS = 2**31 - 1  # of a run of LIGGGHTS, a small integer of its
 LEAST_GAP = 0.18  # between shapes, in elements: a triangle across it has the angle that a mesh promises, tan 10 degrees
-# Names that pandas reads as no value, and those that it reads as a truth value or a number, in any case of letters.
+# Names that pandas reads as no value, and those that it reads as a truth value or a number, in any case of letters: a
+# table of rows 007 and 12 would name them 7 and 12, and look for rows of that name.
 NO_VALUES = (
     *("#N/A", "#N/A N/A", "#NA", "-1.#IND", "-1.#QNAN", "-NaN", "-nan", "1.#IND", "1.#QNAN", "<NA>", "N/A", "NA"),
     *("NULL", "NaN", "None", "n/a", "nan", "null"),
 )
 OTHER_VALUES = ("true", "false", "inf", "infinity")
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
 SHOWN_DIGITS = 6  # of a length in a sentence
 SHOWN = 5e-6  # relative: lengths are shown to six digits, and the one that a sentence names is enough
 SAMPLE_ELEMENTS = 4  # elements along the shorter side of a sample; fewer give no map
@@ -146,18 +145,6 @@ def reaches(length: float, least: float) -> bool:
     return length >= least - SHOWN * abs(least)
 
 
-def model_properties_given(run: CheckedRun) -> Fault | None:
-    """Every property that the chosen contact, cohesion and rolling models need is given in the solver's section."""
-    known = load_schema("settings")["properties"]["solver"]["properties"]
-    given = to_si(run.settings["solver"])
-    for name, chosen_by in solver_settings(CONTACT_MODEL, words={"solver": given}).items():
-        if name not in given:
-            key = next(key for key in known if name in to_si({key: 0.0}))
-            missing = f"solver.{key} ({allowed_text(known[key])}) is missing"
-            return f"solver.{chosen_by}", f"one whose properties stand beside it: {missing}"
-    return None
-
-
 def element_resolves_pattern(run: CheckedRun) -> Fault | None:
     """The feet of a pattern are at least two elements across their narrow side, and not too close for them.
 
@@ -234,7 +221,7 @@ def names_stay_names(run: CheckedRun) -> Fault | None:
     """No row or part has a name that tables are read with as no value, as a truth value or as a number."""
     named = {"row": run.row.values["row"]} | {f"parts.{name}": name for name in run.settings.get("parts", {})}
     for key, name in named.items():
-        if name in NO_VALUES or name.casefold() in OTHER_VALUES:
+        if name in NO_VALUES or name.casefold() in OTHER_VALUES or NUMBER.fullmatch(name):
             taken = "no value" if name in NO_VALUES else "a truth value or a number"
             return key, f"another name: in a table '{name}' is taken for {taken}"
     return None
@@ -258,5 +245,5 @@ def steps_countable(run: CheckedRun) -> Fault | None:
     return "", f"{steps:.4g} time steps, allowed are at most {MOST_STEPS}, which the solver counts"
 
 
-COMMON_CHECKS: tuple[Check, ...] = (names_stay_names, model_properties_given, thickness_known)
+COMMON_CHECKS: tuple[Check, ...] = (names_stay_names, thickness_known)
 LAST_CHECKS: tuple[Check, ...] = (steps_countable,)  # after those of the case, which say more of what they know

@@ -6,6 +6,7 @@ import difflib
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from bulkwear.workflows.config.design import CONFIRMATION, RULE_NAMES, TARGETS, ConfigError, list_studies
 from bulkwear.workflows.config.study_files import own_studies
@@ -57,14 +58,19 @@ def triggers_sentence(found: Iterable[str]) -> str | None:
     )
 
 
-def placed(sentence: str, names: Naming, given: Sequence[str]) -> str:
-    """Return the sentence for a fault of the settings over all studies with the place where they stand: those of a
-    module come from its config, unless the command line has settings.
+def placed(sentence: str, names: Naming, given: Sequence[str], files: Sequence[Path] = ()) -> str:
+    """Return the sentence for a fault of the settings over all studies with the place where they stand: the command
+    line, the files of --configfile, or the config of a module.
 
-    given: what the command line has for --config
+    given: what the command line has for --config, KEY=VALUE
     """
-    of_module = names.is_module and not given and sentence.startswith(f"{COMMAND_LINE}: ")
-    return f"config of the module{sentence.removeprefix(COMMAND_LINE)}" if of_module else sentence
+    begin = f"{COMMAND_LINE}: "
+    key = re.match(r"\w*", sentence.removeprefix(begin))[0]
+    if not sentence.startswith(begin) or key in (word.partition("=")[0] for word in given):
+        return sentence
+    if files:
+        return f"{', '.join(map(str, files))}{sentence.removeprefix(COMMAND_LINE)}"
+    return sentence if given or not names.is_module else f"config of the module{sentence.removeprefix(COMMAND_LINE)}"
 
 
 def unheard_sentence(given: Sequence[str], heard: Collection[str], known: Collection[str]) -> str | None:

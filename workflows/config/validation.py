@@ -58,6 +58,7 @@ FOREIGN_SUFFIXES = (
     *("ms", "min", "kg", "g"),
 )
 ALL_SUFFIXES = sorted([*UNIT_OF_SUFFIX, *FOREIGN_SUFFIXES], key=len, reverse=True)
+OTHER_BASE = re.compile(r"[-+]?0[xXoObB][0-9A-Fa-f]+\Z")
 VALUE_WITH_UNIT = re.compile(r"(?P<number>[-+]?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[A-Za-z°%/][\w/%^°]*)\Z")
 
 
@@ -196,6 +197,8 @@ def wrong_value(path: KeyPath, value: Any, schema: dict[str, Any]) -> str:
     name = dotted(path) or "the file"
     if isinstance(value, str) and schema.get("type") in NUMBERS:
         with_unit = VALUE_WITH_UNIT.match(value.strip())
+        if OTHER_BASE.match(value.strip()):
+            return f"{name} is {value.strip()}, allowed is {allowed_text(schema)}, in decimal digits"
         if with_unit:
             return _unit_in_value(path, with_unit["number"], with_unit["unit"], schema)
         if NUMBER.match(value.strip()):

@@ -189,7 +189,7 @@ def _register_law(path: Path, folder: Path) -> None:
     name = path.relative_to(folder).as_posix()
     try:
         module = importlib.import_module(f"{LAWS_PACKAGE}.{path.stem}")
-    except Exception as fault:
+    except (Exception, SystemExit) as fault:
         raise ProjectError(import_fault(fault, path, folder)) from fault
     if not hasattr(module, LAW):
         raise ProjectError(f"{name}: there is no {LAW} in it, allowed is a module with {LAW} = Law(...).")

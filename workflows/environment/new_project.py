@@ -26,6 +26,8 @@ def make_project(folder: Path) -> str:
         raise ValueError(f"{folder}: {folder.parts[0]} is the home of nobody, allowed is another folder.") from None
     if any(brace in str(PACKAGE) for brace in "{}"):
         raise ValueError(f"{PACKAGE}: the package is in a folder with a brace in its name, allowed is one without.")
+    if any(brace in str(folder.absolute()) for brace in "{}"):
+        raise ValueError(f"{folder}: found a brace in the name of the folder, allowed is one without.")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise ValueError(f"{folder}: there is something in it, allowed is a new or an empty folder.")
     try:

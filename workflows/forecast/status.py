@@ -31,6 +31,7 @@ from bulkwear.workflows.forecast.job_states import (
 )
 
 RESULTS, FORECAST, PAGE = "results", "forecast.csv", "report.html"
+COLUMNS = ("job", "cores", "wall_h")  # of a forecast, that are looked at
 HEADS = ("job", "state", "cycle", "worn volume", "time left")
 SECONDS_PER_HOUR = 3600.0
 MOST_IDLE = 3  # looks, between which one job may end and the next begin
@@ -75,12 +76,26 @@ def read_status(study: str, cores: int | None = None, results: Path = Path(RESUL
     folder = results / study
     if not (folder / FORECAST).is_file():
         raise StatusError(_nothing(study, folder))
-    forecast, locked = pd.read_csv(folder / FORECAST, keep_default_na=False), locked_files()
+    forecast, locked = _forecast(folder / FORECAST), locked_files()
     jobs = tuple(job_state(folder, job, locked) for job in forecast["job"])
     running = forecast["cores"][[job.state == RUNNING for job in jobs]].sum()
     used = cores or max(int(running), 1)
     left = hours_left(forecast, jobs)
     return Status(study, folder, forecast, jobs, left, used, whole_hours(forecast, jobs, left, used))
+
+
+def _forecast(path: Path) -> pd.DataFrame:
+    """Return the table of a forecast. Raises StatusError where it is damaged."""
+    try:
+        table = pd.read_csv(path, keep_default_na=False)
+    except ValueError:  # pandas' own of what is no table, and of what is no text
+        table = pd.DataFrame()
+    if lacking := [name for name in COLUMNS if name not in table]:
+        raise StatusError(
+            f"{path}: there is no column {lacking[0]} in it, allowed is the table of a forecast; `snakemake"
+            f" {path.parent.name}` writes it again once it is deleted."
+        )
+    return table
 
 
 def _nothing(study: str, folder: Path) -> str:

@@ -13,7 +13,7 @@ from tests.support.wrong_settings import MATERIALS, OWN_SETTINGS, SETTINGS, STUD
 def test_text_in_another_encoding_is_refused(config):
     """A table saved as UTF-16 is refused by name."""
     config.path(TABLE).write_bytes(config.path(TABLE).read_text(encoding="utf-8").encode("utf-16"))
-    assert message_of(config) == "config/designs/small.csv: byte 0 is not UTF-8, allowed is UTF-8 text."
+    assert message_of(config) == "config/designs/small.csv, line 1: the byte 0xff is not UTF-8, allowed is UTF-8 text."
 
 
 def test_a_table_from_a_spreadsheet_is_read(config):

@@ -13,8 +13,9 @@ from bulkwear.workflows.config.run_checks import NO_VALUES, OTHER_VALUES
 from tests.support.own_machine_project import SETTINGS, machine_study
 
 LOST_PARTS = ("nan", "null", "true", "inf")
-LOST_ROWS = ("NA", "NULL", "None", "True", "INF")
-KEPT = ("na", "none", "all")  # of parts, and of rows
+NUMBERS = ("1", "007", "1e5", "2E3", "1e400")
+LOST_ROWS = ("NA", "NULL", "None", "True", "INF", *NUMBERS)
+KEPT = ("na", "none", "all", "0x1", "5e", "12-2", "12a")  # of parts, and of rows
 
 
 def read_again(name: str):
@@ -25,7 +26,7 @@ def read_again(name: str):
 def test_names_that_are_lost_are_those_of_pandas():
     """All of its spellings of no value, and what it reads as a truth value or a number."""
     assert set(NO_VALUES) == STR_NA_VALUES - {""}
-    assert not any(isinstance(read_again(name), str) for name in (*NO_VALUES, *OTHER_VALUES))
+    assert not any(isinstance(read_again(name), str) for name in (*NO_VALUES, *OTHER_VALUES, *NUMBERS))
     assert [read_again(name) for name in KEPT] == list(KEPT)
 
 

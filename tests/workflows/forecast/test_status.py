@@ -190,6 +190,16 @@ def test_nothing_to_tell_is_one_sentence(tmp_path, monkeypatch, capsys, words, s
     assert line.startswith(said)
 
 
+def test_a_damaged_forecast_is_one_sentence(running, monkeypatch, capsys):
+    """With its file and what to do."""
+    monkeypatch.chdir(running.parent)
+    for text in ("garbage\n", "", "job\nA\n"):
+        (running / "demo" / "forecast.csv").write_text(text)
+        assert main(["status", "demo"]) == 1
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.startswith("results/demo/forecast.csv: there is no column ") and "once it is deleted" in line
+
+
 def test_the_command_tells_of_the_latest_study(running, monkeypatch, capsys):
     """Where none is named; on as many cores as are said."""
     monkeypatch.chdir(running.parent)

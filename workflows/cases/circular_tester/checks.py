@@ -7,11 +7,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from bulkwear.postproc.mesh import PLAIN
-from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.circular_tester.decks import (
     CHANNEL,
     TROUGH_ELEMENT,
-    bed_length,
     channel_length,
     half_width,
     mean_radius,
@@ -28,9 +26,9 @@ from bulkwear.workflows.cases.circular_tester.room import (
     shallower,
     smaller_scale,
 )
+from bulkwear.workflows.cases.circular_tester.turning_checks import TURNING_CHECKS, rounded_up
 from bulkwear.workflows.config.patterns import dimension_columns
 from bulkwear.workflows.config.run_checks import (
-    MOST_STEPS,
     CheckedRun,
     Fault,
     deeper_than,
@@ -44,18 +42,13 @@ from bulkwear.workflows.config.run_checks import (
     reaches,
     shown_inside,
 )
-from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
 VOLUME, VARIED = "volume", "varied"  # series of the design
 ALONE = ("row", "surface")  # columns in which the rows of a pair differ
 # -, how far the chords of a ring's walls lie inside their circle, in largest diameters: at 0.1 poured particles, whose
 # centres keep 0.6 off, begin to touch them; at 0.36 they were kicked, at 0.46 lost.
 CHORD_DIAMETERS = 0.35
-LEAST_STEPS = 10.0  # in which the trough passes the smallest particle; in fewer a contact is over before it is resolved
-# -, times as long as friction alone takes to bring a bed to the speed of the trough it turns before runs start.
-SPIN_UPS = 1.5
 MOST_CHANNEL_DEG = 360.0  # of the annulus, all of it
-ROUNDING = 1e-9  # relative; of revolutions times cycles
 
 
 def summed_by_the_solver(run: CheckedRun) -> Fault | None:
@@ -105,7 +98,7 @@ def sample_in_channel(run: CheckedRun) -> Fault | None:
     quarters = 4.0 * LEVEL_QUARTER_DIAMETERS * max(run.parameters["particle"]["diameters_m"])
     if tester["shape"] != CHANNEL or channel_length(tester) >= max(twice, quarters):
         return None
-    angle = _rounded_up(math.degrees(max(twice, quarters) / mean_radius(tester)))
+    angle = rounded_up(math.degrees(max(twice, quarters) / mean_radius(tester)))
     longest = math.pi * mean_radius(tester) - sample["length_m"] - tester["consolidator_flat_m"]
     if angle > MOST_CHANNEL_DEG and twice >= quarters and longest > 0.0:
         reason = f"so that a channel of {MOST_CHANNEL_DEG:g} degrees is twice as long as sample and consolidator"
@@ -113,11 +106,6 @@ def sample_in_channel(run: CheckedRun) -> Fault | None:
     reason = "twice the length of sample and consolidator" if twice >= quarters else "eight of the largest particles"
     scale = "" if twice >= quarters else smaller_scale(run)
     return "tester.channel_deg", f"at least {angle:g} degrees, {reason}{scale}"
-
-
-def _rounded_up(value: float) -> float:
-    """Return a least value to two decimals, which is enough where it is given."""
-    return math.ceil(100.0 * value * (1.0 - ROUNDING)) / 100.0
 
 
 def ring_is_round(run: CheckedRun) -> Fault | None:
@@ -129,69 +117,6 @@ def ring_is_round(run: CheckedRun) -> Fault | None:
     return "tester.outer_radius_mm", (
         f"at least {millimetres(least)} with tester.shape: ring, whose walls are chords of"
         f" {millimetres(TROUGH_ELEMENT)}, in which smaller particles would be poured, or tester.shape: channel"
-    )
-
-
-def speed_resolved(run: CheckedRun) -> Fault | None:
-    """The trough passes the smallest particle in ten time steps or more."""
-    step, particle = run.parameters["derived"]["largest_time_step_s"], run.parameters["particle"]
-    fastest = min(particle["diameters_m"]) / (LEAST_STEPS * step)
-    return _too_fast(run, fastest / mean_radius(run.parameters["tester"]), "ten time steps for the smallest particle")
-
-
-def bed_stays_down(run: CheckedRun) -> Fault | None:
-    """At the outer wall of a ring the bed is pressed on the floor more than it is thrown outwards."""
-    tester = run.parameters["tester"]
-    if tester["shape"] == CHANNEL:
-        return None
-    reason = "where the centrifugal acceleration at tester.outer_radius_mm is that of gravity"
-    return _too_fast(run, math.sqrt(GRAVITY / tester["outer_radius_m"]), reason)
-
-
-def _too_fast(run: CheckedRun, most: float, reason: str) -> Fault | None:
-    """Return the fault of a trough that turns faster than so many rad/s."""
-    if run.parameters["sliding"]["angular_speed_rad_per_s"] <= most:
-        return None
-    return "sliding.angular_speed_deg_per_s", f"at most {math.floor(math.degrees(most))} deg/s, {reason}"
-
-
-def bed_spun_up(run: CheckedRun) -> Fault | None:
-    """The bed turns longer before runs start than friction takes to bring it to the trough's speed."""
-    sliding = run.parameters["sliding"]
-    friction = min(run.parameters[name]["contact"]["sliding_friction"] for name in ("floor_material", "particle"))
-    if friction <= 0.0:
-        return "bed.floor_material", "a wall on which the particles of bed.material have friction, which turns them"
-    spin_up = sliding["velocity_m_per_s"] / (friction * GRAVITY)
-    least = _rounded_up(SPIN_UPS * spin_up / run.parameters["derived"]["revolution_s"])
-    if sliding["steady_revolutions"] >= least:
-        return None
-    return "sliding.steady_revolutions", (
-        f"at least {least:g}, {SPIN_UPS:g} times the {spin_up:.3g} s in which friction brings the bed to the trough's"
-        f" {sliding['velocity_m_per_s']:.3g} m/s"
-    )
-
-
-def turns_countable(run: CheckedRun) -> Fault | None:
-    """Bed, run-in and run have no more time steps than the solver can be told to make."""
-    derived, sliding = run.parameters["derived"], run.parameters["sliding"]
-    most = MOST_STEPS * derived["largest_time_step_s"] / derived["revolution_s"]
-    for key in ("steady_revolutions", "run_in_revolutions", "revolutions"):
-        if sliding[key] > most:
-            return f"sliding.{key}", f"at most {math.floor(most)}, {MOST_STEPS} time steps, which the solver counts"
-    return None
-
-
-def level_measured(run: CheckedRun) -> Fault | None:
-    """The quarter of the bed whose level is measured has left the consolidator a revolution before runs start."""
-    tester, sliding = run.parameters["tester"], run.parameters["sliding"]
-    quarter = 0.25 * bed_length(tester) / mean_radius(tester)
-    least = _rounded_up(1.0 + quarter / sliding["revolution_rad"])
-    if sliding["steady_revolutions"] >= least:
-        return None
-    turn = math.degrees(sliding["revolution_rad"])
-    return "sliding.steady_revolutions", (
-        f"at least {least:g} where sliding.revolution_deg is {turn:.6g}: a quarter of the bed has then left the"
-        " consolidator before the last revolution, over which its level is measured"
     )
 
 
@@ -273,25 +198,6 @@ def consolidator_levels_bed(run: CheckedRun) -> Fault | None:
     return "tester.consolidator_level_mm", f"{ends}, the bed's height (tester.bed_height_mm) within half a particle"
 
 
-def whole_cycles(run: CheckedRun) -> Fault | None:
-    """The revolutions are a whole number of wear cycles."""
-    sliding = run.settings["sliding"]
-    cycles = sliding["revolutions"] * sliding["cycles_per_revolution"]
-    if cycles >= 1.0 - ROUNDING and abs(cycles - round(cycles)) <= ROUNDING * cycles:
-        return None
-    return "sliding.revolutions", f"a multiple of 1/{sliding['cycles_per_revolution']}, so that wear cycles are whole"
-
-
-def cycle_long_enough(run: CheckedRun) -> Fault | None:
-    """A wear cycle has at least a hundred time steps."""
-    derived = run.parameters["derived"]
-    steps = derived["revolution_s"] / derived["largest_time_step_s"]
-    most = int(steps / LEAST_CYCLE_STEPS)
-    if run.settings["sliding"]["cycles_per_revolution"] <= most:
-        return None
-    return "sliding.cycles_per_revolution", f"at most {most}, so that a cycle has {LEAST_CYCLE_STEPS} time steps"
-
-
 def pattern_in_sample(run: CheckedRun) -> Fault | None:
     """The pattern is less deep than the sample is thick."""
     return deeper_than(run, "thickness")
@@ -314,13 +220,7 @@ TESTER_CHECKS = (
     element_resolves_pattern,
     patch_within_sample,
     pattern_in_sample,
-    whole_cycles,
-    cycle_long_enough,
-    speed_resolved,
-    bed_stays_down,
-    turns_countable,
-    bed_spun_up,
-    level_measured,
+    *TURNING_CHECKS,
     physical_modulus_known,
 )
 

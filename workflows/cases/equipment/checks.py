@@ -183,8 +183,14 @@ def _has_parameters(part: Mapping[str, Any]) -> bool:
 
 
 def operation_within_reason(run: CheckedRun) -> Fault | None:
-    """Megatonnes take no longer than hours may that are given."""
+    """Hours of operation are a block or more, by which they are told, and megatonnes take no more than may be given."""
     operation, hours = run.parameters["operation"], run.parameters["derived"]["operation_s"] / SECONDS_PER_HOUR
+    block_h = run.parameters["sampling"]["block_s"] / SECONDS_PER_HOUR
+    if hours < block_h:
+        if "throughput_kg" not in operation:
+            return "operation.duration_h", f"at least {block_h:.3g} h, a block (sampling.block_s)"
+        least = run.settings["operation"]["throughput_mt"] * block_h / hours
+        return "operation.throughput_mt", f"at least {least:.3g} Mt, a block (sampling.block_s) at inlet.rate_t_per_h"
     if "throughput_kg" not in operation or hours <= LONGEST_OPERATION:
         return None
     most = run.settings["operation"]["throughput_mt"] * LONGEST_OPERATION / hours

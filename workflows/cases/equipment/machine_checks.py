@@ -26,7 +26,14 @@ from bulkwear.postproc.wear.directions import ON_END
 from bulkwear.postproc.wear.thickness import thickness_to_back
 from bulkwear.workflows.cases.equipment.bodies import closed_faces, diagonal, first_within, is_within, share_a_piece
 from bulkwear.workflows.cases.equipment.checks import LEFT_TO_WEAR, thin_phrase
-from bulkwear.workflows.cases.equipment.decks import domain, largest_cell, longest_s, moving_mesh
+from bulkwear.workflows.cases.equipment.decks import (
+    LARGEST_CELL,
+    SOLVER_CELL,
+    domain,
+    largest_cell,
+    longest_s,
+    moving_mesh,
+)
 from bulkwear.workflows.cases.equipment.drawings import drawing
 from bulkwear.workflows.cases.equipment.drum_checks import check_drums
 from bulkwear.workflows.cases.equipment.motions import motion_of
@@ -38,7 +45,7 @@ from bulkwear.workflows.config.run_checks import millimetres
 
 LARGEST_PART = 200.0  # m, diagonal: larger than any machine that particles are simulated in
 LIKELY_UNITS = ("mm", "m", "cm", "in", "ft")  # of drawings, the likeliest first
-MOST_CELLS = 500_000_000  # in which the solver looks for neighbours: 2 GB
+MOST_CELLS = 2**31 - 1  # by which the solver sorts particles in memory, a small integer of its; 8 GB
 OUTSIDE = 1e-8  # m; a facet whose middle is farther out is lost to the solver (SMALL_DMBRDR of LIGGGHTS 3.8.0)
 GRAZING = 0.05  # -, of the smallest diameter: particles that overlap a wall by less are not thrown off
 FINEST = 0.01  # -, of half the longest side of such room: parts that are narrower there may be missed
@@ -129,8 +136,8 @@ def _length(metres: float) -> str:
 
 
 def _check_cells(run: Parameters, surface: SurfaceMesh) -> None:
-    """Raise ConfigError for room that takes more cells than fit into memory."""
-    sides, cell = [high - low for low, high in domain(run, surface)], largest_cell(run)
+    """Raise ConfigError for room that takes more cells than the solver counts: their side is half a reach, always."""
+    sides, cell = [high - low for low, high in domain(run, surface)], SOLVER_CELL / LARGEST_CELL * largest_cell(run)
     cells = math.prod(side / cell for side in sides)
     if cells <= MOST_CELLS:
         return
@@ -138,9 +145,9 @@ def _check_cells(run: Parameters, surface: SurfaceMesh) -> None:
     largest = max(rooms, key=rooms.__getitem__)
     found = f"{' x '.join(f'{side:.3g}' for side in sides)} m, {cells:.1e} cells of {millimetres(cell)}"
     raise ConfigError(
-        f"{'domain' if run['domain'] else 'parts'}: what is simulated is {found} in which neighbours are looked for,"
+        f"{'domain' if run['domain'] else 'parts'}: what is simulated is {found} by which particles are sorted,"
         f" allowed are {MOST_CELLS:.1e}: a part is in a wrong unit or far from the others (parts.{largest} needs the"
-        f" most room, {_length(rooms[largest])}), or particle_scale is too small."
+        f" most room, {_length(rooms[largest])}), an outlet or domain is too large, or particle_scale is too small."
     )
 
 

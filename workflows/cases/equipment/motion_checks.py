@@ -151,6 +151,19 @@ def turned_once(run: CheckedRun) -> Fault | None:
     return None
 
 
+def something_moves(run: CheckedRun) -> Fault | None:
+    """While wear is counted material comes in, flows out, or is moved by a part."""
+    parameters, start_up = run.parameters, run.parameters["start_up"]["most_s"]
+    moving = [motion for _, motion in _moving(run) if motion.get("stop_s", math.inf) > start_up]
+    if parameters["inlet"] or parameters["outlets"] or moving:
+        return None
+    stopped = next((part for part, motion in _moving(run)), None)
+    allowed = f"above start_up.most_s, {start_up:g} s, or none: nothing would move while wear is counted"
+    if stopped is None:
+        return "parts", "a part with a motion where there is neither inlet nor outlet: nothing would move"
+    return f"parts.{stopped}.motion.stop_s", allowed
+
+
 def _longest_s(parameters: Mapping[str, Any]) -> float:
     """Return the longest (s) that a run may get."""
     return most_blocks(parameters) * parameters["sampling"]["block_s"]
@@ -161,4 +174,8 @@ def _moving(run: CheckedRun) -> list[tuple[str, Mapping[str, Any]]]:
 
 
 MOTION_CHECKS: tuple[Check, ...] = (motions_complete, motions_move, swings_are_seen, swings_are_felt)
-COUNTED_MOTION_CHECKS: tuple[Check, ...] = (blocks_are_whole_swings, turned_once)  # of blocks that are long enough
+COUNTED_MOTION_CHECKS: tuple[Check, ...] = (
+    something_moves,
+    blocks_are_whole_swings,
+    turned_once,
+)  # of blocks that are long enough

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.cases.sliding_sample.container_checks import CONTAINER_CHECKS
 from bulkwear.workflows.cases.sliding_sample.parameters import THIN_BED_LAYERS
 from bulkwear.workflows.cases.sliding_sample.range_checks import LEAST_EXTENTS, RANGE_CHECKS
 from bulkwear.workflows.cases.sliding_sample.shape import clumps_stay_whole
-from bulkwear.workflows.cases.sliding_sample.study import PARTICLE_SCALE
 from bulkwear.workflows.config.optimise import OPTIMISE
 from bulkwear.workflows.config.patterns import highest_point, pattern_of
 from bulkwear.workflows.config.run_checks import (
@@ -29,19 +29,11 @@ from bulkwear.workflows.engine.derived import ADAPTIVE, PERIODIC, ROUNDING, WIND
 from bulkwear.workflows.engine.grains import CLUMP, grain_kind, largest_extent, smallest_radius
 from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
-PACKING = "packing"  # block of settings, of containers
 LARGEST_AHEAD = 5.0  # m, as the schema has it for bed.ahead_mm
 LARGEST_TRAVEL = 100.0  # m, as the schema has it for sliding.travel_mm
 # -, of a periodic bed, in largest extents: in a narrower one a particle can touch a neighbour and that one's image, and
 # hangs between them. No wider bound, for small comparisons go down to 2.1; studies have 4.7 and more.
 LEAST_WIDTH_EXTENTS = LEAST_EXTENTS
-
-
-def containers_given(run: CheckedRun) -> Fault | None:
-    """Where rows give their particle scale, settings say in what containers packings are compared."""
-    if PARTICLE_SCALE not in run.row.values or PACKING in run.settings:
-        return None
-    return PACKING, "a block of keys, as in config/studies/particle_size.yaml, where rows give particle_scale"
 
 
 def bed_wider_than_arches(run: CheckedRun) -> Fault | None:
@@ -244,7 +236,7 @@ def _least_travel(run: CheckedRun) -> float:
 
 
 SLIDING_CHECKS: tuple[Check, ...] = (
-    containers_given,
+    *CONTAINER_CHECKS,
     enough_layers,
     pattern_in_bed,
     pattern_fits,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from bulkwear.postproc.wear.caps import GRAVITY, gap_closing_step
-from bulkwear.postproc.wear.laws import LAWS
+from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault, millimetres, reaches
+from bulkwear.workflows.config.wear_checks import taken_up, worn_within
 from bulkwear.workflows.engine.derived import ADAPTIVE, ROUNDING, WINDOW
 from bulkwear.workflows.engine.grains import largest_extent
 from bulkwear.workflows.engine.pouring import bulk_density
@@ -20,8 +20,6 @@ LEAST_WINDOW_EXTENTS = 3.0
 # -, height of a bump over the smaller radius of its foot: the mesh of steeper ones fails now and then from 14 on
 MESHED_STEEPNESS = 12.0
 LEAST_SKIRT = 0.13  # -, width of a straight skirt over an element: triangles across 0.12 have less than 10 degrees
-# -, on the wear of a bed that slides its whole way under its own weight: one that mostly rides along slides a tenth
-LEAST_SLIDING = 0.1
 HUNDREDTHS = 100.0  # of a scale, to which a bound in a sentence is rounded
 
 
@@ -92,34 +90,12 @@ def skirt_can_be_meshed(run: CheckedRun) -> Fault | None:
 
 def wear_within_reason(run: CheckedRun) -> Fault | None:
     """What wears by sliding is neither worn down to the floor by a fraction of its wear, nor more than updates take."""
-    wear, sample, sliding = (run.parameters[name] for name in ("wear", "sample", "sliding"))
-    law = LAWS.get(wear["law"])
-    if not wear["deform"] or law is None or not law.comparable:
-        return None
+    sample, sliding = run.parameters["sample"], run.parameters["sliding"]
+    rooms = [(sample["height_above_floor_m"], "the sample's height above the floor")]
+    if (cycles := sliding["cycles"]) != ADAPTIVE:  # of those the number is not known
+        rooms.append(taken_up(run, cycles, sliding["travel_m"] / sliding["velocity_m_per_s"] / cycles))
     pressure = bulk_density(run.parameters["particle"]) * GRAVITY * run.parameters["bed"]["thickness_m"]
-    coefficient = wear["accelerated_wear_coefficient_per_pa"]
-    depth = LEAST_SLIDING * coefficient * pressure * sliding["travel_m"]
-    room, why = min((sample["height_above_floor_m"], "the sample's height above the floor"), _taken_up(run))
-    if reaches(room, depth):
-        return None
-    return "", (
-        f"the bed's weight alone would wear {millimetres(depth)} or more off the sample, allowed are"
-        f" {millimetres(room)}, {why}: a wear coefficient, with its acceleration, of {coefficient * room / depth:.6g}"
-        f" 1/Pa at most (found {coefficient:.6g})"
-    )
-
-
-def _taken_up(run: CheckedRun) -> tuple[float, str]:
-    """Return how deep (m) all updates of a run can wear, without end where their number is not known, and words."""
-    wear, sliding = run.parameters["wear"], run.parameters["sliding"]
-    if sliding["cycles"] == ADAPTIVE:
-        return float("inf"), ""
-    duration = sliding["travel_m"] / sliding["velocity_m_per_s"] / sliding["cycles"]
-    step = min(
-        wear["largest_step_edge_fraction"] * run.parameters["sample"]["element_size_m"],
-        gap_closing_step(wear["gap_closing_fraction"], duration, GRAVITY),
-    )
-    return sliding["cycles"] * step, f"what {sliding['cycles']} updates can take"
+    return worn_within(run, pressure, sliding["travel_m"], *rooms)
 
 
 RANGE_CHECKS: tuple[Check, ...] = (

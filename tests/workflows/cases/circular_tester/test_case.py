@@ -497,3 +497,20 @@ def test_radii_out_of_order_are_told_where_they_were_given():
     assert str(fault.value) == (
         "command line: tester.inner_radius_mm is 600 for row plain, allowed is below 500 mm, tester.outer_radius_mm."
     )
+
+
+@pytest.mark.parametrize(
+    ("wear", "said"),
+    [
+        (
+            {"acceleration": 1e9, "largest_step_edge_fraction": 0.5, "gap_closing_fraction": 0.5},
+            r"off the sample, allowed are 4 mm, sample\.thickness_mm: a wear coefficient",
+        ),
+        ({"largest_step_edge_fraction": 1e-6}, r"allowed are \S+ mm, what 4 updates can take: a wear coefficient"),
+        ({"local_thickness_mm": 10}, r"wear\.local_thickness_mm is 10 for .*, allowed is at most 4 mm, sample\.thick"),
+    ],
+)
+def test_wear_that_no_sample_takes(wear, said):
+    """More than its thickness, more than its updates, and a thickness that it does not have."""
+    with pytest.raises(ConfigError, match=said):
+        tiny_tester(wear=wear)

@@ -214,6 +214,16 @@ MOTIONS = [
         "parts.plate.motion.stop_s is 0.4",
         "at most start_up.most_s, 0.45 s, less ramp_s, or at least",
     ),
+    (
+        {**ONLY_FILLED, "parts": {"plate": {"motion": {**TURNS, "stop_s": 0.4}}, "paddle": {"motion": None}}},
+        "parts.plate.motion.stop_s is 0.4",
+        "above start_up.most_s, 0.45 s, or none: nothing would move while wear is counted",
+    ),
+    (
+        {**ONLY_FILLED, "parts": {"paddle": {"motion": None}}},
+        "parts is a block of keys",
+        "a part with a motion where there is neither inlet nor outlet: nothing would move",
+    ),
     *(
         (
             motion(kind="oscillation", amplitude_mm=[0, 0, 1], period_s=period),
@@ -383,6 +393,11 @@ WEAR = [
         {**ONLY_FILLED, "operation": {"duration_h": None, "throughput_mt": 1}},
         "operation.throughput_mt is 1",
         "operation.duration_h in its place where there is no inlet to count tonnes at",
+    ),
+    (
+        {"operation": {"duration_h": 1e-5}},
+        "operation.duration_h is 1e-05",
+        f"at least {BLOCK_S / 3600:.3g} h, a block (sampling.block_s)",
     ),
     (
         {"operation": {"duration_h": None, "throughput_mt": 10}},

@@ -156,8 +156,8 @@ def test_room_that_takes_too_many_cells(run):
     """A part 150 m away, as one in cm among others in mm may be: the largest part is named, or the domain."""
     far = ("far", box((120.0, 50.0, 120.0), 40.0), {"edge_m": 40.0})
     message = message_of(run, ("plate", PLATE, {}), far)
-    assert message.startswith("parts: what is simulated is 121 x 50.7 x 121 m") and "allowed are 5.0e+08" in message
-    assert "(parts.far needs the most room, 176.9 m), or particle_scale is too small" in message
+    assert message.startswith("parts: what is simulated is 121 x 50.7 x 121 m") and "allowed are 2.1e+09" in message
+    assert "(parts.far needs the most room, 176.9 m), an outlet or domain is too large, or particle_scale" in message
     wide = {"low_m": [-50.0, -50.0, -50.0], "high_m": [50.0, 50.0, 50.0]}
     assert message_of(run, ("plate", PLATE, {}), domain=wide).startswith(
         "domain: what is simulated is 100 x 100 x 100 m"
