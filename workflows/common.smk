@@ -10,10 +10,19 @@ from snakemake.utils import min_version
 from bulkwear.workflows.config.deck_checks import template_faults_told
 from bulkwear.workflows.config.deck_commands import left_out
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
+from bulkwear.workflows.config.optimise import OPTIMISE
 from bulkwear.workflows.config.published_tables import check_published
 from bulkwear.workflows.config.run_checks import check_files
 from bulkwear.workflows.config.schema import load_schema
-from bulkwear.workflows.config.targets import naming, nearly_studies, placed, requested_studies, unheard_sentence
+from bulkwear.workflows.config.targets import (
+    naming,
+    nearly_studies,
+    placed,
+    requested_studies,
+    unheard_sentence,
+    unknown_run,
+)
+from bulkwear.workflows.config.until import UNTIL
 from bulkwear.workflows.engine.cases import case_folders
 from bulkwear.workflows.engine.chain import sample_decks
 from bulkwear.workflows.engine.job import let_jobs_import
@@ -64,6 +73,8 @@ def checked_studies(settings, named):
             logger.info(sentence)
         studies = {name: load_study(name, overrides=settings) for name in names}
         if not GIVEN.target_jobs:
+            if said := unknown_run(GIVEN.targets, known_runs(studies.values())):
+                raise ConfigError(said)
             check_published(PROJECT)
             for study in studies.values():
                 if len(study.runs) > MANY_RUNS:
@@ -73,6 +84,12 @@ def checked_studies(settings, named):
         return studies
     except (ConfigError, DeckError, ProjectError) as fault:
         raise WorkflowError(placed(str(fault), NAMING, GIVEN.config or (), GIVEN.configfile or ())) from None
+
+
+def known_runs(studies):
+    """The names of the runs of each study; without those to which rounds add runs."""
+    fixed = (study for study in studies if not {UNTIL, OPTIMISE} & set(study.settings))
+    return {study.name: [run.name for run in study.runs] for study in fixed}
 
 
 def check_decks(study):

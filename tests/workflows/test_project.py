@@ -14,7 +14,8 @@ import pandas as pd
 import pytest
 
 from bulkwear.__main__ import main
-from bulkwear.workflows.config.targets import Naming, naming, nearly_studies, requested_studies
+from bulkwear.workflows.config.design import ConfigError, load_study
+from bulkwear.workflows.config.targets import Naming, naming, nearly_studies, requested_studies, unknown_run
 from bulkwear.workflows.engine.project import PACKAGE, Project
 from bulkwear.workflows.report.printed import PDF, browser
 from tests.support.loaded_project import load_project, plan
@@ -294,6 +295,26 @@ def test_names_with_words_round_them_are_ours():
     near = nearly_studies(["bw_screning_x", "bw_screening_x", "all", "screning", "results/screning/"], project, named)
     assert near == ["bw_screning_x is no study, the nearest is screening; it is taken for a rule of this Snakefile."]
     assert nearly_studies(["screning"], project) == []
+
+
+def test_a_file_of_a_run_that_a_study_does_not_have():
+    """It is named, with those that there are; files of beds and studies, and studies that add runs, are let be."""
+    runs = {"demo": ["R5_convex", "R5_plain"]}
+    said = unknown_run(["demo", "results/demo/R9_convex/wear.csv"], runs)
+    assert said.startswith(
+        "command line: results/demo/R9_convex/wear.csv: the run is 'R9_convex', allowed is one of R5_"
+    )
+    fine = ["demo", "results/demo/R5_plain/wear.csv", "results/demo/beds/wear.csv/x", "results/screening/R0/wear.csv"]
+    assert unknown_run(fine, runs) is None
+
+
+def test_a_study_called_as_a_rule_is_refused_by_its_name(tmp_path):
+    """Not taken for the rule, which needs wildcards."""
+    (tmp_path / "config/studies").mkdir(parents=True)
+    (tmp_path / "config/studies/report.yaml").write_text("title: x\n")
+    assert requested_studies(["report"], project=Project(tmp_path)) == ["report"]
+    with pytest.raises(ConfigError, match="a study cannot be called report"):
+        load_study("report", Project(tmp_path))
 
 
 LAW, CASE, MINE = "laws/hardened.py", "cases/dimpled/case.py", "config/studies/mine.yaml"

@@ -17,6 +17,10 @@ COMMAND_LINE = "command line"  # as faults of what it gives begin
 DEMO = "demo"  # of the package
 RERUN_TRIGGERS = ("mtime", "params", "input")  # as in profiles/default: what Snakemake makes a job again for
 BELOW_RESULTS = re.compile(r"(?:.*/)?results/([^/]+)/")
+# of a run alone, not of its bed or a cycle
+FILE_OF_RUN = re.compile(
+    r"(?:.*/)?results/(?P<study>[^/]+)/(?P<run>[^/]+)/(?:surface\.vtu|wear\.csv|worn_surface\.vtu)"
+)
 
 
 @dataclass(frozen=True)
@@ -134,6 +138,18 @@ def nearly_studies(targets: Iterable[str], project: Project | None = None, names
     return sentences
 
 
+def unknown_run(targets: Iterable[str], runs: Mapping[str, Collection[str]]) -> str | None:
+    """Return a sentence for the first target that is a file of a run which its study does not have.
+
+    runs: {study: names of its runs}, of those that are made
+    """
+    for word in targets:
+        found = FILE_OF_RUN.fullmatch(word)
+        if found and found["run"] not in runs.get(found["study"], (found["run"],)):
+            return unknown_name(COMMAND_LINE, f"{word}: the run", found["run"], sorted(runs[found["study"]]))
+    return None
+
+
 def _studies_of_job(rule: str, wildcards: Mapping[str, str], written: list[str], names: Naming) -> list[str] | None:
     """Return the studies that a job needs as `_studies_of` does; its rule may be one that a case has of its own."""
     name = wildcards.get("study", "")
@@ -149,6 +165,8 @@ def _studies_of(word: str, written: list[str], names: Naming) -> list[str] | Non
     """Return the studies that a target needs, none for a rule or a file of no study; None for what is not ours."""
     below = BELOW_RESULTS.match(word)
     name = below[1] if below else names.ours(word)
+    if not below and name in RULE_NAMES and name in written:
+        return [name]  # which is refused, as no study can be called so
     if not below and (name in RULE_NAMES or "/" in word or "." in word):
         return None if names.is_module and name not in RULE_NAMES else []
     for ending in () if below or name is None else TARGETS:

@@ -94,7 +94,8 @@ class Project:
 
     def astray(self) -> list[str]:
         """Return a sentence for each file of the project that nearly has the name of one of the package, or has it in
-        another folder, and so does not stand before it: templates, and files right in `config/` and of its cases.
+        another folder, and so does not stand before it: templates, and files right in `config/` and of its cases; and
+        for each that is nearly a study.
         """
         if self.is_package:
             return []
@@ -110,8 +111,14 @@ class Project:
         ]
         near = [(path, difflib.get_close_matches(path.name, names, 1, ALIKE), names) for path, names in found]
         return [
-            f"{path.as_posix()}: not in place of the package's {names[name].as_posix()}, whose name it nearly has"
-            for path, (name, *_), names in ((path, close, names) for path, close, names in near if close)
+            *(
+                f"{path.as_posix()}: not in place of the package's {names[name].as_posix()}, whose name it nearly has"
+                for path, (name, *_), names in ((path, close, names) for path, close, names in near if close)
+            ),
+            *(
+                f"{path.as_posix()}: no study, whose file ends with .yaml"
+                for path in self._own(f"{CONFIG}/studies", "*.yml")
+            ),
         ]
 
     def _own(self, folder: str, pattern: str) -> list[Path]:

@@ -82,14 +82,16 @@ def test_a_file_that_nearly_stands_before_one_of_the_package_is_said(mine):
     (mine.folder / "templates/equipment").mkdir(parents=True, exist_ok=True)
     for name in ("machine_end.in.j2", "equipement.in.j2", "equipment.in", "equipment.j2", "mine.in.j2", "notes.md"):
         (mine.folder / "templates/equipment" / name).touch()
-    for name in ("defaults.yaml", "material.yml", "ore.yaml", "cases/sliding_sample.yml"):
+    for name in ("defaults.yaml", "material.yml", "ore.yaml", "cases/sliding_sample.yml", "studies/third.yml"):
         (mine.folder / "config" / name).touch()
     said = {sentence.partition(":")[0]: sentence for sentence in mine.astray()}
     assert set(said) == {
         *("templates/equipment/machine_end.in.j2", "templates/equipment/equipement.in.j2"),
         *("templates/equipment/equipment.in", "templates/equipment/equipment.j2"),
         *("config/defaults.yaml", "config/material.yml", "config/cases/sliding_sample.yml"),
+        "config/studies/third.yml",
     }
+    assert said["config/studies/third.yml"].endswith(": no study, whose file ends with .yaml")
     theirs = "not in place of the package's templates/_shared/machine_end.in.j2, whose name it nearly has"
     assert said["templates/equipment/machine_end.in.j2"].endswith(theirs)
     assert Project(PACKAGE).astray() == []
