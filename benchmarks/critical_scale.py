@@ -27,7 +27,7 @@ import pandas as pd
 
 from benchmarks.command_line import at_least_one, command, output_folder, read_table
 from benchmarks.plots.critical_scale import ratio_by_candidate, ratio_by_scale
-from benchmarks.ratios import ASSUMED, ratio_intervals
+from benchmarks.ratios import ASSUMED, ratio_intervals, scatter_of_groups
 from benchmarks.runs import (
     BY,
     attempted,
@@ -171,6 +171,8 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
     names = {"ratio": "over_reference", "ratio_low": "over_reference_low", "ratio_high": "over_reference_high"}
     ends = {"mean": "wear_over_plain", "low": "ratio_low", "high": "ratio_high"}
     told = told.rename(columns=names | ends | {"group": "particle_scale", "setting": "candidate"})
+    scatter = scatter_of_groups(pairs["candidate"], pairs["wear_over_plain"], pairs["particle_scale"])
+    told = told.join(scatter.add_suffix("_of_scale"), on="particle_scale")
     means = pairs.groupby(["particle_scale", "candidate"], sort=False)[kept].mean().reset_index()
     of_reference = means[means["candidate"] == REFERENCE].set_index("particle_scale")["processor_s"]
     means["processor_over_reference"] = means["processor_s"] / means["particle_scale"].map(of_reference)

@@ -12,10 +12,38 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
+from scipy.stats import chi2
 
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, difference, estimates
 
 ASSUMED = "one scatter is assumed for all"
+
+
+def scatter_of_groups(
+    settings: Sequence[str] | np.ndarray, values: Sequence[float] | np.ndarray, groups: Sequence[Hashable] | np.ndarray
+) -> pd.DataFrame:
+    """Return by group the scatter (standard deviation of ln(value) between packings of one setting) and its degrees of
+    freedom, of groups that have any; arguments as for `ratio_intervals`.
+    """
+    table = pd.DataFrame({"group": groups, "setting": settings, "value": np.log(np.asarray(values, float))})
+    of_setting = table.groupby(["group", "setting"])["value"]
+    squares = of_setting.var().mul(of_setting.size() - 1).groupby("group").sum()
+    freedom = (of_setting.size() - 1).groupby("group").sum()
+    found = pd.DataFrame({"scatter": np.sqrt(squares / freedom), "freedom": freedom})
+    return found[found["freedom"] > 0]
+
+
+def equal_scatter(scatter: np.ndarray, freedom: np.ndarray) -> float:
+    """Return how probable it is that groups of one scatter differ as much as these or more, by Bartlett's test.
+
+    scatter: (k,) standard deviations, k of 2 or more; freedom: (k,) degrees of freedom. M. S. Bartlett, Proc. R. Soc.
+    Lond. A 160 (1937) 268
+    """
+    total = freedom.sum()
+    pooled = (freedom * scatter**2).sum() / total
+    statistic = total * np.log(pooled) - (freedom * np.log(scatter**2)).sum()
+    correction = 1.0 + ((1.0 / freedom).sum() - 1.0 / total) / (3.0 * (len(freedom) - 1))
+    return float(chi2.sf(statistic / correction, len(freedom) - 1))
 
 
 def ratio_intervals(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from benchmarks.ratios import ASSUMED
+from benchmarks.ratios import ASSUMED, equal_scatter
 from benchmarks.runs import BY
 from benchmarks.scale_case import CANDIDATES, REFERENCE
 from benchmarks.touched import mean_touched, mean_touched_on_flat, met_from_above, met_from_the_front
@@ -30,6 +30,7 @@ SPHERES = 1000  # at random places, of each scale and way
 GRAVEL = (youngs_modulus(0.07e9, 0.24), 0.24)  # Pa, -: Young's modulus and Poisson's ratio (Yan 2022, Table 3.2)
 BULK_DENSITY, THICKNESS = 1450.0, 0.046  # kg/m3, m, of the source's bed
 PERCENT = 100.0
+SIGNIFICANT = 0.05  # -, below which a test rejects
 NEWTONS_TIMES = (1.0, 10.0)  # loads, over the bed's weight on a square as wide as the particle
 
 
@@ -117,8 +118,20 @@ def scatter_words(table: pd.DataFrame) -> str:
     return (
         "Low and high are 95 % intervals: what is repeated is the packing, convex and plain sample in the same bed, and"
         f" {ASSUMED} candidates and scales, {100.0 * table['scatter'].max():.1f} % of the ratio ({freedom} degrees of"
-        f" freedom). Without an interval: {UNKNOWN}."
+        f" freedom). {_of_scales(table)}Without an interval: {UNKNOWN}."
     )
+
+
+def _of_scales(table: pd.DataFrame) -> str:
+    """Return the scatter of each particle scale, and whether it may be one for all."""
+    found = table.drop_duplicates("particle_scale").dropna(subset="scatter_of_scale").set_index("particle_scale")
+    found = found[found["scatter_of_scale"] > 0.0]
+    if len(found) < 2:
+        return ""
+    told = ", ".join(f"{PERCENT * row.scatter_of_scale:.1f} at {scale:g}" for scale, row in found.iterrows())
+    chance = equal_scatter(found["scatter_of_scale"].to_numpy(), found["freedom_of_scale"].to_numpy())
+    said = "rejects" if chance < SIGNIFICANT else "does not reject"
+    return f"By particle scale it is {told} %, and Bartlett's test {said} one for all (p = {chance:.2g}). "
 
 
 def critical_part(critical: pd.DataFrame) -> list[str]:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.stats import bartlett
 
 from benchmarks import critical_scale, scale_case, scale_page
 from benchmarks.critical_scale import (
@@ -151,6 +152,22 @@ def test_scales_share_one_scatter():
     assert table["particle_scale"].tolist() == [6, 6, 8, 8] and (table["freedom"] == 4).all()
     assert table["scatter"].to_numpy() == pytest.approx(np.full(4, 0.5))
     assert table["over_reference"].to_numpy() == pytest.approx(np.ones(4))
+
+
+def test_whether_scales_scatter_alike_is_told():
+    """Each with its own, and a test that is scipy's of the residuals where every scale has one candidate."""
+    generator = np.random.default_rng(3)
+    values = {scale: np.exp(generator.normal(0.0, size, 4)) for scale, size in ((4, 0.02), (6, 0.03), (8, 0.04))}
+    at = [rows(((REFERENCE, tuple(found)),)).assign(particle_scale=scale) for scale, found in values.items()]
+    said = scale_page.scatter_words(comparison(pd.concat(at, ignore_index=True)))
+    own = ", ".join(f"{100.0 * np.log(found).std(ddof=1):.1f} at {scale}" for scale, found in values.items())
+    chance = bartlett(*(np.log(found) for found in values.values())).pvalue
+    assert (
+        f"By particle scale it is {own} %, and Bartlett's test does not reject one for all (p = {chance:.2g})." in said
+    )
+    values[8] = np.exp([0.0, 1.0, -1.0, 2.0])
+    at[2] = rows(((REFERENCE, tuple(values[8])),)).assign(particle_scale=8)
+    assert "Bartlett's test rejects one" in scale_page.scatter_words(comparison(pd.concat(at, ignore_index=True)))
 
 
 def test_a_scale_without_the_reference_has_no_ratio():

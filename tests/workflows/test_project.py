@@ -301,9 +301,7 @@ def test_a_file_of_a_run_that_a_study_does_not_have():
     """It is named, with those that there are; files of beds and studies, and studies that add runs, are let be."""
     runs = {"demo": ["R5_convex", "R5_plain"]}
     said = unknown_run(["demo", "results/demo/R9_convex/wear.csv"], runs)
-    assert said.startswith(
-        "command line: results/demo/R9_convex/wear.csv: the run is 'R9_convex', allowed is one of R5_"
-    )
+    assert said.startswith("target results/demo/R9_convex/wear.csv: its run is 'R9_convex', allowed is one of R5_")
     fine = ["demo", "results/demo/R5_plain/wear.csv", "results/demo/beds/wear.csv/x", "results/screening/R0/wear.csv"]
     assert unknown_run(fine, runs) is None
 

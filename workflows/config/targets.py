@@ -146,7 +146,7 @@ def unknown_run(targets: Iterable[str], runs: Mapping[str, Collection[str]]) -> 
     for word in targets:
         found = FILE_OF_RUN.fullmatch(word)
         if found and found["run"] not in runs.get(found["study"], (found["run"],)):
-            return unknown_name(COMMAND_LINE, f"{word}: the run", found["run"], sorted(runs[found["study"]]))
+            return unknown_name(f"target {word}", "its run", found["run"], sorted(runs[found["study"]]))
     return None
 
 
