@@ -162,6 +162,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, nargs="?", default=RESULTS, help="of results, with a folder per study")
     given = parser.parse_args()
+    if not given.folder.is_dir():
+        parser.error(f"{given.folder} is no folder, allowed is one with one folder per study")
     if (given.folder / "design.csv").exists():
         parser.error(f"{given.folder} is one study, allowed is a folder with one folder per study")
     table = study_rows(given.folder)
