@@ -11,8 +11,9 @@ from pathlib import Path
 import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
-from bulkwear.postproc.statistics.intervals import UNKNOWN
+from bulkwear.postproc.statistics.intervals import UNKNOWN, estimates
 from bulkwear.postproc.statistics.verdicts import AGREES, VERDICTS
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
 from bulkwear.postproc.tables.summary import patterned_name, published_value
 from bulkwear.workflows.cases.circular_tester.comparison import worn_out_at
 from bulkwear.workflows.cases.circular_tester.figure_findings import (
@@ -55,6 +56,31 @@ def all_answers(folder: Path, figures: Collection[str], foreign: Mapping[str, st
         *(gone(pd.read_csv(worn_out), scale["hours_per_revolution"]) if WORN_OUT in figures else []),
         claims(of_study(folder, "findings")),
         *(said.read_text(encoding="utf-8").splitlines()[:1] if SENSITIVITY in figures else []),
+    ]
+
+
+def each_setting(summary: pd.DataFrame) -> list[str]:
+    """Return what a revolution takes off each sample, the force on it and how far the bed slides over it: of runs that
+    are not compared. summary: a row per run
+    """
+    summary = summary[summary["mean_normal_force_N"] > 0.0]  # without any nothing has worn or slid
+    per_revolution = CUBIC_MILLIMETRES * summary["worn_volume_m3"] / summary["revolutions"]
+    slid = summary["sliding_work_J"] / summary["mean_normal_force_N"] / summary["travel_m"]
+    of = {
+        "rate": estimates(summary["setting"], per_revolution),
+        "force": estimates(summary["setting"], summary["mean_normal_force_N"]),
+        "slid": estimates(summary["setting"], PERCENT * slid),
+    }
+    surfaces = summary.drop_duplicates("setting").set_index("setting")["surface"]
+
+    def told(what: str, setting: str, unit: str) -> str:
+        found = of[what][setting]
+        return with_interval(found.value, *found.interval(), found.packings, unit)
+
+    return [
+        f"A revolution takes {told('rate', name, 'mm³')} off the {surface} sample of {name}; the bed presses on it with"
+        f" {told('force', name, 'N')} and slides over it by {told('slid', name, '%')} of the travel."
+        for name, surface in surfaces.items()
     ]
 
 

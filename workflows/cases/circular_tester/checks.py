@@ -226,18 +226,18 @@ TESTER_CHECKS = (
 
 
 def design_fault(rows: Sequence[Mapping[str, Any]]) -> str | None:
-    """Return a phrase unless one plain and one patterned row are of series volume, of which most figures are made, in
-    equal machines with equal particles, and where seeds differ: a packing is one bed for all rows of a machine and
-    particle scale.
+    """Return a phrase unless one plain and one patterned row, or one row alone, are of series volume, of which most
+    figures are made, in equal machines with equal particles, and where seeds differ: a packing is one bed for all rows
+    of a machine and particle scale.
     """
     seeds = [str(seed) for seed in dict.fromkeys(row.get("seed", "none") for row in rows)]
     if len(seeds) > 1:
         return f"seed is {', '.join(seeds)}, allowed is one for all rows; further packings are added by packings"
     main = [row for row in rows if row["series"] == VOLUME]
-    if not _is_pair(main):
+    if len(main) != 1 and not _is_pair(main):
         found = " and ".join(sorted(row["surface"] for row in main)) or "no row"
-        return f"series {VOLUME} has {found}, allowed is one patterned and one plain row"
-    if apart := _apart(main):
+        return f"series {VOLUME} has {found}, allowed is one patterned and one plain row, or one row"
+    if len(main) == 2 and (apart := _apart(main)):
         return f"rows of series {VOLUME} differ in {' and '.join(apart)}, allowed are row, surface and pattern"
     return _varied_fault([row for row in rows if row["series"] == VARIED])
 

@@ -60,10 +60,14 @@ def told(study: Study) -> dict[str, Any]:
 
 def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
     """Return in sentences what a study that is done answers, whatever tables an earlier choice of rows has left."""
-    from bulkwear.workflows.cases.circular_tester.answers import all_answers  # every job reads this page
+    import pandas as pd
+
+    from bulkwear.workflows.cases.circular_tester import answers  # every job reads this page
 
     told = study["told"]
-    return all_answers(folder, study["figures"], told["foreign"]) if told["paired"] else [UNPAIRED]
+    if told["paired"]:
+        return answers.all_answers(folder, study["figures"], told["foreign"])
+    return [*answers.each_setting(pd.read_csv(folder / "summary.csv")), UNPAIRED]
 
 
 def beds(folder: Path) -> list[Block]:

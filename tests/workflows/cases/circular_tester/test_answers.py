@@ -127,5 +127,28 @@ def test_claims_are_counted():
 
 
 def test_rows_without_a_pair_are_not_compared(tmp_path):
-    """It is said, and nothing else, whatever tables there are."""
-    assert page.facts({"told": {"paired": False}, "figures": {}}, tmp_path) == [page.UNPAIRED]
+    """Each is told by itself, whatever tables there are: two packings of 2 and 4 mm3 a revolution under 10 N, of which
+    the bed slides over a half; a sample that nothing touches is not told.
+    """
+    summary = pd.DataFrame(
+        {
+            "setting": ["mine", "mine", "high"],
+            "surface": "plain",
+            "revolutions": 2.0,
+            "travel_m": 3.0,
+            "worn_volume_m3": [4e-9, 8e-9, 0.0],
+            "mean_normal_force_N": [10.0, 10.0, 0.0],
+            "sliding_work_J": [15.0, 15.0, 0.0],
+        }
+    )
+    summary.to_csv(tmp_path / "summary.csv", index=False)
+    (told, unpaired) = page.facts({"told": {"paired": False}, "figures": {}}, tmp_path)
+    assert unpaired == page.UNPAIRED
+    assert (
+        told.startswith("A revolution takes 3 mm³ (95 % interval ")
+        and "2 packings) off the plain sample of mine; " in told
+    )
+    assert "the bed presses on it with 10 N (95 % interval 10 to 10 N, 2 packings)" in told.replace(
+        "10 to 10, ", "10 to 10 N, "
+    )
+    assert "slides over it by 50 %" in told and told.endswith(" of the travel.")

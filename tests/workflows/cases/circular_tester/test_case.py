@@ -372,11 +372,13 @@ def test_a_ring_has_less_room_for_corners():
         tiny_tester(tester={"shape": "ring", "outer_radius_mm": 191})
 
 
-def test_a_design_needs_a_pair_of_one_particle_scale():
-    """Without a plain and a convex row of series volume nothing sets the scale of time."""
+def test_a_design_needs_a_pair_of_one_particle_scale_or_one_row():
+    """Without a plain and a convex row of series volume nothing sets the scale of time; one row is told by itself."""
     case = find_case("circular_tester")
     rows = [{"row": "a", "series": "volume", "surface": "convex"}, {"row": "b", "series": "mesh", "surface": "plain"}]
-    assert "series volume" in case.design_fault(rows)
+    assert case.design_fault(rows) is None and case.design_fault(rows[:1]) is None
+    assert "series volume has no row" in case.design_fault(rows[1:])
+    assert "has convex and convex" in case.design_fault([rows[0], rows[0]])
     rows[1]["series"] = "volume"
     assert case.design_fault(rows) is None
     rows[0]["height_mm"] = 4.0  # of the pattern's
