@@ -7,6 +7,7 @@ from snakemake.cli import get_argument_parser
 from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
+from bulkwear.workflows.config.contact_checks import unused_properties
 from bulkwear.workflows.config.deck_checks import template_faults_told
 from bulkwear.workflows.config.deck_commands import left_out
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
@@ -77,6 +78,8 @@ def checked_studies(settings, named):
                 raise ConfigError(said)
             check_published(PROJECT)
             for study in studies.values():
+                for sentence in unused_properties(study.settings, (run.parameters["solver"] for run in study.runs)):
+                    logger.info(f"Study {study.name}: {sentence}")
                 if len(study.runs) > MANY_RUNS:
                     logger.info(f"Study {study.name} has {len(study.runs):,} runs: to plan them takes minutes.")
                 check_files(study.name, study.case, study.runs)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault
@@ -15,6 +15,7 @@ from bulkwear.workflows.engine.grains import smallest_radius
 from bulkwear.workflows.engine.templates import solver_settings
 
 CONTACT_MODEL = "_shared/contact_model"  # template
+CHOICES = ("contact_model", "cohesion", "rolling_friction")  # settings that choose a model
 HOOKE, BRIDGES = "hooke", "washino/capillary/viscous"
 # -, of the contact's area in each model, over 2 pi R* times the overlap, the circle in which two spheres meet
 AREA_OF_MODEL = {"sjkr": 1.0, "sjkr2": 2.0}
@@ -35,6 +36,25 @@ def model_properties_given(run: CheckedRun) -> Fault | None:
             missing = f"solver.{key} ({allowed_text(known[key])}) is missing"
             return f"solver.{chosen_by}", f"one whose properties stand beside it: {missing}"
     return None
+
+
+def unused_properties(settings: Mapping[str, Any], solvers: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Return a sentence per property of a model that a study gives and that none of its runs uses: no fault, as models
+    change by row and from the command line.
+
+    settings: of the study; solvers: the section of each run
+    """
+    chosen = {tuple(solver[name] for name in CHOICES): solver for solver in solvers}
+    used = set().union(*(solver_settings(CONTACT_MODEL, words={"solver": solver}) for solver in chosen.values()))
+    chosen_by = {name: model for name, model in solver_settings(CONTACT_MODEL).items() if model}
+    said = []
+    for key in settings["solver"]:
+        name = next(iter(to_si({key: 0.0})))
+        if name in chosen_by and name not in used:
+            model = chosen_by[name]
+            models = ", ".join(dict.fromkeys(solver[model] for solver in chosen.values()))
+            said.append(f"solver.{key} is given and used by nothing: solver.{model} is {models}.")
+    return said
 
 
 def cohesion_keeps_particles_apart(run: CheckedRun) -> Fault | None:

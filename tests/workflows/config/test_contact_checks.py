@@ -5,7 +5,11 @@ import re
 
 import pytest
 
-from bulkwear.workflows.config.contact_checks import FEWEST_STEPS_OF_IMPACT, LARGEST_STUCK_OVERLAP
+from bulkwear.workflows.config.contact_checks import (
+    FEWEST_STEPS_OF_IMPACT,
+    LARGEST_STUCK_OVERLAP,
+    unused_properties,
+)
 from bulkwear.workflows.config.design import ConfigError
 from bulkwear.workflows.engine.derived import smallest_rayleigh_time
 from tests.support.tiny import tiny_study
@@ -79,3 +83,15 @@ def test_a_bridge_reaches_further_than_its_least_separation():
     assert "solver.least_separation_ratio is 1.2" in message
     assert message.endswith("allowed is below 1.1, solver.most_separation_ratio.")
     assert tiny_study(solver=WET | {"least_separation_ratio": 1.01, "most_separation_ratio": 1.1}).runs
+
+
+def test_properties_that_no_model_uses_are_told():
+    """Of a model that is not chosen, by any run; those of a chosen one are not told, nor what is no model's."""
+    dry = tiny_study(solver={"cohesion_energy_density_j_per_m3": 2e4, "kept_restarts": "all"})
+    solvers = [run.parameters["solver"] for run in dry.runs]
+    assert unused_properties(dry.settings, solvers) == [
+        "solver.cohesion_energy_density_j_per_m3 is given and used by nothing: solver.cohesion is none."
+    ]
+    wet = tiny_study(solver=sticky("sjkr", 2e4))
+    assert unused_properties(wet.settings, [run.parameters["solver"] for run in wet.runs]) == []
+    assert unused_properties(dry.settings, [*solvers, wet.runs[0].parameters["solver"]]) == []
