@@ -174,8 +174,5 @@ def _moving(run: CheckedRun) -> list[tuple[str, Mapping[str, Any]]]:
 
 
 MOTION_CHECKS: tuple[Check, ...] = (motions_complete, motions_move, swings_are_seen, swings_are_felt)
-COUNTED_MOTION_CHECKS: tuple[Check, ...] = (
-    something_moves,
-    blocks_are_whole_swings,
-    turned_once,
-)  # of blocks that are long enough
+# of blocks that are long enough
+COUNTED_MOTION_CHECKS: tuple[Check, ...] = (something_moves, blocks_are_whole_swings, turned_once)
