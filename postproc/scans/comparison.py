@@ -7,7 +7,7 @@ scan stands out of it, that is where the simulation wore more. Heights are along
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -176,16 +176,21 @@ def bump_names(mesh: SurfaceMesh) -> pd.DataFrame:
 
 
 def bump_sections(
-    scan: np.ndarray, pristine: SurfaceMesh, worn: Mapping[str, SurfaceMesh], accuracy: float
+    scan: np.ndarray,
+    pristine: SurfaceMesh,
+    worn: Mapping[str, SurfaceMesh],
+    accuracy: float,
+    bumps: Collection[str] | None = None,
 ) -> pd.DataFrame:
-    """Return sections through the middle of every bump: along the travel ("side") and across ("front").
+    """Return sections through the middle of bumps: along the travel ("side") and across ("front").
 
-    scan: (k, 3) m in the surface's axes; accuracy: m, of the scanner. Columns: bump, view, along_mm (from the middle),
-    pristine_height_mm, measured_height_mm (NaN where too few points lie), points, band_mm (accuracy, as far as it
-    reaches vertically), and per worn surface <name>_height_mm.
+    scan: (k, 3) m in the surface's axes; accuracy: m, of the scanner; bumps: those that are wanted by name, by default
+    all. Columns: bump, view, along_mm (from the middle), pristine_height_mm, measured_height_mm (NaN where too few
+    points lie), points, band_mm (accuracy, as far as it reaches vertically), and per worn surface <name>_height_mm.
     """
     parts = []
-    for bump in bump_names(pristine).itertuples():
+    named = bump_names(pristine)
+    for bump in (named if bumps is None else named[named["bump"].isin(list(bumps))]).itertuples():
         middle = np.array([bump.x_mm, bump.y_mm]) / MILLIMETRES
         corners = pristine.points[pristine.triangles[pristine.cell_data["part"] == bump.part]].reshape(-1, 3)
         for view, axis in VIEWS.items():

@@ -201,7 +201,7 @@ def contour_losses(pristine: SurfaceMesh, worn: SurfaceMesh, bumps: list[str]) -
     """Largest vertical loss (mm) in the sections of bumps, by bump; flanks too steep for it do not count (Fig 6.5)."""
     from bulkwear.postproc.scans.comparison import bump_sections, largest_losses  # slow to import
 
-    losses = largest_losses(bump_sections(NOTHING, pristine, {"worn": worn}, 0.0)).set_index("bump")["worn_um"]
+    losses = largest_losses(bump_sections(NOTHING, pristine, {"worn": worn}, 0.0, bumps)).set_index("bump")["worn_um"]
     return losses[[bump for bump in bumps if bump in losses.index]] * (MILLIMETRES / MICROMETRES)
 
 
