@@ -33,6 +33,12 @@ BAD_KEYS = [
     (
         STUDY,
         "width_mm: 80",
+        "width_mm: 0x8",
+        f"{QUICK}: sample.width_mm is 0x8, allowed is {WIDTH_RANGE}, in decimal digits.",
+    ),
+    (
+        STUDY,
+        "width_mm: 80",
         "width_cm: 8",
         f"{QUICK}: unit cm is not allowed for sample.width, write sample.width_mm (found width_cm: 8).",
     ),
@@ -399,6 +405,10 @@ BAD_TABLES = [
     ("", "config/designs/small.csv: the file is empty, allowed is a header and one row or more."),
     ("\n \n", "config/designs/small.csv: the file is empty, allowed is a header and one row or more."),
     (TABLE_HEADER, "config/designs/small.csv: found a header and no rows, allowed is one row or more."),
+    (
+        "# my rows\nrow\nR9\n",
+        "config/designs/small.csv, line 1: found a comment, allowed is the header: tables have none.",
+    ),
     (
         "row;height_mm\nR9;6\n",
         "config/designs/small.csv, line 1: found 'row;height_mm', allowed is the comma between columns.",

@@ -15,7 +15,7 @@ import pytest
 
 from bulkwear.__main__ import main
 from bulkwear.workflows.config.design import ConfigError, load_study
-from bulkwear.workflows.config.targets import Naming, naming, nearly_studies, requested_studies, unknown_run
+from bulkwear.workflows.config.targets import Naming, naming, nearly_studies, placed, requested_studies, unknown_run
 from bulkwear.workflows.engine.project import PACKAGE, Project
 from bulkwear.workflows.report.printed import PDF, browser
 from tests.support.loaded_project import load_project, plan
@@ -297,6 +297,21 @@ def test_names_with_words_round_them_are_ours():
     assert nearly_studies(["screning"], project) == []
 
 
+def test_a_fault_of_settings_is_of_the_place_that_gives_them():
+    """The command line where it has that key, else the files of --configfile; without either the module's config."""
+    said, mine = "command line: packings is 200, allowed is 1.", Naming(is_module=True)
+    for given, files, place in (
+        (["packings=200"], [Path("my.yaml")], "command line"),
+        (["rows=[R5]"], [Path("my.yaml")], "my.yaml"),
+        ([], [Path("my.yaml"), Path("ours.yaml")], "my.yaml, ours.yaml"),
+        (["rows=[R5]"], [], "command line"),
+        ([], [], "config of the module"),
+    ):
+        assert placed(said, mine, given, files) == f"{place}: packings is 200, allowed is 1."
+    assert placed(said, Naming(), []) == said
+    assert placed("default.yaml: packings is 200.", mine, [], [Path("my.yaml")]) == "default.yaml: packings is 200."
+
+
 def test_a_file_of_a_run_that_a_study_does_not_have():
     """It is named, with those that there are; files of beds and studies, and studies that add runs, are let be."""
     runs = {"demo": ["R5_convex", "R5_plain"]}
@@ -384,6 +399,7 @@ def test_a_bad_project_is_one_sentence(tmp_path, file, old, new, sentence):
             "LAW = Law(lambda columns, given: columns['work'], 'so.', 'nobody')\n",
             f"{LAW}: the law hardened ends in KeyError: 'work'; allowed are columns of the ledger and the law's",
         ),
+        (LAW, "import sys\n\nsys.exit(0)\n", "laws/hardened.py, line 3: SystemExit: 0; allowed is Python"),
         ("laws/_part.py", "1 / 0\n", "laws/_part.py, line 1: ZeroDivisionError: division by zero; allowed is Python"),
         (
             "cases/dimpled/settings.schema.yaml",

@@ -6,7 +6,14 @@ import pytest
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.scans import registration
 from bulkwear.postproc.scans.registration import CELL, position_error, register, symmetries
-from bulkwear.postproc.scans.start import IDENTITY, RigidMotion, largest_distance, plane_step, turned_about
+from bulkwear.postproc.scans.start import (
+    IDENTITY,
+    RigidMotion,
+    largest_distance,
+    plane_step,
+    rough_positions,
+    turned_about,
+)
 from bulkwear.postproc.wear.old_surface import OldSurface
 from tests.support import scanned_sample as sample
 
@@ -135,6 +142,13 @@ def test_position_error_is_that_of_repeated_fits():
 def test_one_plane_holds_nothing_within_it():
     points = np.column_stack([np.random.default_rng(1).uniform(0.0, 0.1, (500, 2)), np.zeros(500)])
     assert position_error(points, np.tile((0.0, 0.0, 1.0), (500, 1)), sample.NOISE, np.ones((1, 3))) == np.inf
+
+
+def test_points_on_one_line_show_no_surface(pristine):
+    """Nor do points in one place."""
+    for along in (np.linspace(0.0, 1.0, 200), np.zeros(200)):
+        with pytest.raises(ValueError, match="in one place or on one line"):
+            rough_positions(np.outer(along, (1.0, 0.0, 0.0)), pristine)
 
 
 def test_motions_undo_each_other():

@@ -11,7 +11,7 @@ from bulkwear.postproc.flow.bed import last_snapshot, read_snapshot
 from bulkwear.postproc.readers.solver_log import thermo_table
 from bulkwear.workflows.cases.sliding_sample.decks import bed_mass, settled_bed
 from bulkwear.workflows.cases.sliding_sample.work import single_spheres
-from bulkwear.workflows.config.clumps import find_clump, read_clump
+from bulkwear.workflows.config.clumps import MOST_SPHERES, find_clump, read_clump
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.layers import read_csv_rows
 from bulkwear.workflows.engine import cycles
@@ -168,6 +168,10 @@ def test_other_cases_know_no_shape(study):
     [
         ("x,y,z\n0,0,0\n", "column radius is missing"),
         ("x,y,z,radius\n0,0,0,1\n", "found one sphere, allowed are two or more"),
+        (
+            "x,y,z,radius\n" + "".join(f"{k},0,0,1\n" for k in range(MOST_SPHERES + 1)),
+            "found 51 spheres, allowed are 50",
+        ),
         ("x,y,z,radius\n0,0,0,1\n2.1,0,0,1\n", "found spheres apart from the others"),
         ("x,y,z,radius\n0,0,0,1\n1,0,0,1\n0,0,0,1\n", "found a sphere twice"),
         ("x,y,z,radius\n0,0,0,1\n0.5,0,0,0.4\n", "line 3: found a sphere within another"),
