@@ -219,7 +219,9 @@ def study_that_was_run(folder: Path, fidelity: str, settings: Mapping[str, Any] 
     if study.optimise:
         return as_decided(study, folder)
     runs = pd.read_csv(folder / "design.csv", dtype={"row": str})
-    chosen = {ROWS: runs["row"].unique().tolist(), PACKINGS: int(runs["packing"].max())}
+    chosen = {ROWS: runs["row"].unique().tolist()}
+    if not all(PACKINGS in row for row in study.design_rows):  # else each has its own, and a setting of them is refused
+        chosen[PACKINGS] = int(runs["packing"].max())
     return load_study(folder.name, overrides={**given, **chosen})
 
 

@@ -113,3 +113,11 @@ def test_a_caption_says_first_what_the_figure_shows():
     assert said[0] == "![A wears (most).](demo_quick_depth.png)"
     assert said[1].strip() == "**A wears [most].** Worn depth. Dots: runs."
     assert [each.strip() for each in said[2:]] == ["![Bed.](demo_quick_bed.png)", "**Bed.** Dots."]
+
+
+def test_a_design_whose_rows_have_packings_of_their_own_is_found_again(tmp_path):
+    """Rows that were run are chosen, their packings stand in the design: a setting of them is refused."""
+    folder = tmp_path / "mill"
+    folder.mkdir()
+    pd.DataFrame({"run": ["n65"], "row": ["n65"], "packing": [1]}).to_csv(folder / "design.csv", index=False)
+    assert [run.name for run in study_that_was_run(folder, "standard").runs] == ["n65"]
