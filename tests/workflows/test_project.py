@@ -582,3 +582,12 @@ def test_a_bad_project_ends_snakemake(tmp_path):
     """With that sentence, before any job."""
     output = said_of(tmp_path, "--snakefile", str(PACKAGE / "Snakefile"), "--dry-run", STUDY, code=1)
     assert f"{tmp_path}: there is no folder config in it" in output and "Traceback" not in output
+
+
+def test_a_file_in_the_place_of_results_ends_snakemake(tmp_path):
+    """Before any job, in one sentence; the file stays."""
+    folder = own_project(tmp_path / "my project")
+    (folder / "results").write_text("mine\n")
+    output = said_of(tmp_path, *outside_of(folder), STUDY, "--dry-run", code=1)
+    assert "results: found a file, allowed is a folder, or none" in output and "Traceback" not in output
+    assert (folder / "results").read_text() == "mine\n"

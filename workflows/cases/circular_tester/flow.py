@@ -57,9 +57,9 @@ def revolutions_over_packings(means: pd.DataFrame, value: str) -> pd.DataFrame:
 def steady_revolutions(series: pd.DataFrame, measures: Sequence[str] = STEADINESS) -> pd.DataFrame:
     """From which revolution on each measure of each run is steady, by the rule of `postproc.statistics.steady`.
 
-    Columns: run, surface, packing, measure, start (revolutions), mean, drift_percent with drift_low and drift_high,
-    answer; measure "all" has the latest start, NaN where one is not steady. Raises ValueError for a run of fewer
-    instants than FEWEST_VALUES.
+    Columns: run, surface, packing, measure, start_revolutions, mean, drift_percent with drift_low_percent and
+    drift_high_percent, answer; measure "all" has the latest start, NaN where one is not steady. Raises ValueError for a
+    run of fewer instants than FEWEST_VALUES.
     """
     rows = []
     for key, of_run in series.groupby(OF_RUN, sort=False):
@@ -70,13 +70,15 @@ def steady_revolutions(series: pd.DataFrame, measures: Sequence[str] = STEADINES
         windows = {name: steady_window(ordered["revolution"], ordered[name]) for name in measures}
         rows += [same | {"measure": name} | _told(window) for name, window in windows.items()]
         start = common_start(windows.values())
-        rows.append(same | {"measure": "all", "start": start, "answer": STEADY if np.isfinite(start) else UNSAID})
+        rows.append(
+            same | {"measure": "all", "start_revolutions": start, "answer": STEADY if np.isfinite(start) else UNSAID}
+        )
     return pd.DataFrame(rows)
 
 
 def _told(window: Window) -> dict[str, float | str]:
-    ends = {f"drift_{end}": 100.0 * getattr(window, f"drift_{end}") for end in ("low", "high")}
-    numbers = {"start": window.start, "mean": window.mean, "drift_percent": 100.0 * window.drift}
+    ends = {f"drift_{end}_percent": 100.0 * getattr(window, f"drift_{end}") for end in ("low", "high")}
+    numbers = {"start_revolutions": window.start, "mean": window.mean, "drift_percent": 100.0 * window.drift}
     return numbers | ends | {"answer": window.answer}
 
 

@@ -56,11 +56,11 @@ RATIO = {
     "change_percent": ("change of the ratio over the run", "%"),
 }
 STEADY_HEADS = {
-    "start": ("start", "revolution"),
+    "start_revolutions": ("start", "revolution"),
     "mean": ("mean", "of the measure"),
     "drift_percent": ("drift", "%"),
-    "drift_low": ("drift, interval from", "%"),
-    "drift_high": ("to", "%"),
+    "drift_low_percent": ("drift, interval from", "%"),
+    "drift_high_percent": ("to", "%"),
 }
 EXPERIMENT = "Yan 2022, section 6.2.3"
 UNLIKE_ITS_SUM = "seven of them are not the volume that is printed of 56 h"

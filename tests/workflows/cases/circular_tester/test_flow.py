@@ -56,12 +56,12 @@ def test_steady_from():
     table = steady_revolutions(study.series(revolutions=12, packings=2)).set_index(["run", "measure"])
     assert set(table.index.get_level_values("run")) == {"plain", "convex", "plain-2", "convex-2"}
     assert table.loc[("plain", "all"), "answer"] == STEADY
-    assert 0.5 < table.loc[("plain", "all"), "start"] < 5.0
+    assert 0.5 < table.loc[("plain", "all"), "start_revolutions"] < 5.0
     drifting = study.series(revolutions=12)
     drifting["bed_height_m"] *= 1.0 + 0.05 * drifting["revolution"]
     table = steady_revolutions(drifting).set_index(["run", "measure"])
     assert table.loc[("plain", "bed_height_m"), "answer"] == DRIFTING
-    assert np.isnan(table.loc[("plain", "all"), "start"])
+    assert np.isnan(table.loc[("plain", "all"), "start_revolutions"])
     with pytest.raises(ValueError, match="5 instants"):
         steady_revolutions(drifting.groupby("run").head(5))
 

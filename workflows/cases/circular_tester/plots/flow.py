@@ -102,7 +102,7 @@ def _with_intervals(
 
 def steady_words(rows: pd.DataFrame) -> str:
     """Say of the packings of a measure from where on they are steady; rows: of `steady_revolutions`."""
-    steady = rows.loc[rows["answer"] == STEADY, "start"]
+    steady = rows.loc[rows["answer"] == STEADY, "start_revolutions"]
     others = rows.loc[rows["answer"] != STEADY, "answer"].value_counts()
     told = [f"{count} x {answer}" for answer, count in others.items()]
     if len(steady):

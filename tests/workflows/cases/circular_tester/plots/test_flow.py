@@ -35,7 +35,7 @@ def test_steadiness(tmp_path):
 )
 def test_words_on_steadiness(answers, words):
     """No packing is left out, whatever is said of it."""
-    assert tester.steady_words(pd.DataFrame(answers, columns=["answer", "start"])) == words
+    assert tester.steady_words(pd.DataFrame(answers, columns=["answer", "start_revolutions"])) == words
 
 
 @pytest.mark.parametrize("packings", [1, 3])
