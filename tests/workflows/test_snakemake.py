@@ -12,8 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from bulkwear.workflows.config.design import ConfigError, load_study
-from bulkwear.workflows.config.targets import requested_studies
+from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.job import STOPPED
 from tests import REPOSITORY
 from tests.support.compiled import share_compiled
@@ -119,42 +118,6 @@ def test_only_cases_of_the_studies_asked_for_are_imported(tmp_path):
     assert planned_jobs(finish(snakemake(folder, *job, "--dry-run"))) == {"box_sizes": 1}
     output, _ = (process := snakemake(folder, "tiny", "--dry-run")).communicate(timeout=TIMEOUT)
     assert process.returncode != 0 and "not to be imported" in output
-
-
-@pytest.mark.parametrize(
-    ("targets", "studies"),
-    [
-        ([], ["demo"]),
-        (["screening", "calibration_decks"], ["screening", "calibration"]),
-        (["results/pin_on_disc/report.html", "./results/demo/R9_plain/wear.csv"], ["pin_on_disc", "demo"]),
-        (["screening_confirmation_forecast", "screening"], ["screening", "screening_confirmation"]),
-        (["cost_rates"], []),
-        (["results/cost_rates.json", "report.html"], []),
-    ],
-)
-def test_targets_name_their_studies(targets, studies):
-    """By name, with an ending, or by a file of its results; the best designs come with the study that found them."""
-    assert requested_studies(targets) == studies
-
-
-def test_jobs_of_a_cluster_name_their_studies():
-    """A job by itself needs the study of its wildcards, whatever its rule, or that of its target; else none."""
-    drawn = [
-        ("figure_forces", {"study": "demo"}),
-        ("rule_of_a_case", {"study": "screening", "run": "R1"}),
-        ("other", {}),
-    ]
-    assert requested_studies([], drawn) == ["demo", "screening"]
-    jobs = [("worn_run", {"study": "demo", "run": "R9_plain"}), ("screening_forecast", {}), ("cost_rates", {})]
-    assert requested_studies([], jobs) == ["demo", "screening"]
-    assert requested_studies([], jobs[2:]) == []
-
-
-@pytest.mark.parametrize("target", ["screning", "results/screning/report.html", "demo_confirmed", "confirmation"])
-def test_targets_of_no_study_are_refused(target):
-    """Neither a study nor a rule nor a file: the sentence names the target and the studies."""
-    with pytest.raises(ConfigError, match=f"target is '{target}', allowed is one of calibration, .*, worn_bump"):
-        requested_studies([target])
 
 
 @pytest.mark.solver
