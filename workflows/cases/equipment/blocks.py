@@ -6,7 +6,7 @@ Rates are those of the true wear coefficient per hour of operation, whatever the
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy import optimize
+from scipy import optimize, sparse
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas, edge_lengths_per_triangle, read_surface, stl_corners
 from bulkwear.postproc.statistics.intervals import error_of_mean, students_t
@@ -24,8 +24,8 @@ from bulkwear.postproc.wear.fields import REMOVED_THICKNESS
 from bulkwear.postproc.wear.kernel_sums import columns_of_law
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.part_loads import part_loads
-from bulkwear.postproc.wear.thickness import LOCAL_THICKNESS, with_thickness
-from bulkwear.workflows.cases.equipment.life import allowed_depths
+from bulkwear.postproc.wear.thickness import LOCAL_THICKNESS, thickness_to_back, with_thickness
+from bulkwear.workflows.cases.equipment.life import allowed_depths, thinning
 from bulkwear.workflows.cases.equipment.motions import axis_point
 from bulkwear.workflows.cases.equipment.parameters import law_values, sums_of
 from bulkwear.workflows.cases.equipment.phases import phase_of
@@ -43,11 +43,14 @@ Parameters = Mapping[str, Any]
 
 @dataclass(frozen=True, eq=False)
 class Geometry:
-    """A run's pristine surface with its local thickness, the area patch of each face, and the table of patches."""
+    """A run's pristine surface with its local thickness, the area patch of each face, the table of patches, and those
+    behind each patch, see `patches_behind`.
+    """
 
     surface: SurfaceMesh
     patch: np.ndarray
     table: pd.DataFrame
+    behind: sparse.csr_array
 
 
 @lru_cache(maxsize=4)
@@ -57,7 +60,30 @@ def _geometry(path: Path, stamp: int, length: float, given: tuple[tuple[int, flo
     table = pd.DataFrame(patch_table(surface, patch))
     size = areas(surface.points, surface.triangles)
     thickness = surface.point_data[LOCAL_THICKNESS][surface.triangles].mean(axis=1)
-    return Geometry(surface, patch, table.assign(thickness_m=patch_means(thickness, size, patch, len(table))))
+    table = table.assign(thickness_m=patch_means(thickness, size, patch, len(table)))
+    return Geometry(surface, patch, table, patches_behind(surface, patch, dict(given)))
+
+
+def patches_behind(surface: SurfaceMesh, patch: np.ndarray, given: Collection[int]) -> sparse.csr_array:
+    """Return by which shares (count, count) of its area each patch has which patches at its back, where the thickness
+    of a part is measured and so is lost from both sides; none where it is given.
+
+    surface: pristine; patch: (m,) of each face, as from `area_patches`; given: labels of the parts whose thickness is
+    given. Faces without a back are left out.
+    """
+    part, size = surface.cell_data["part"], areas(surface.points, surface.triangles)
+    count, found = int(patch.max()) + 1, []
+    for label in sorted(set(part[patch >= 0].tolist()) - set(given)):
+        faces = np.flatnonzero(part == label)
+        back = thickness_to_back(surface.points, surface.triangles[faces])[1]
+        front, back = np.repeat(faces, 3)[back.ravel() >= 0], faces[back[back >= 0]]
+        found.append((size[front], patch[front], patch[back]))
+    if not found:
+        return sparse.csr_array((count, count))
+    weight, front, back = (np.concatenate(each) for each in zip(*found, strict=True))
+    shares = sparse.csr_array(sparse.coo_array((weight, (front, back)), shape=(count, count)))
+    whole = shares.sum(axis=1)
+    return sparse.diags_array(np.divide(1.0, whole, out=np.zeros(count), where=whole > 0.0)) @ shares
 
 
 def geometry_of(run: Parameters, folder: Path) -> Geometry:
@@ -84,7 +110,10 @@ def rate_volume(run: Parameters, surface: SurfaceMesh, ledger: pd.DataFrame) -> 
 
 
 def patch_rows(run: Parameters, span: Span, folder: Path, surface: SurfaceMesh, ledger: pd.DataFrame) -> pd.DataFrame:
-    """Return the table of a block by area patches; folder: of its run; surface: as it was in the block."""
+    """Return the table of a block by area patches; folder: of its run; surface: as it was in the block.
+
+    back_recession_m_per_h: of what lies behind a patch, where its thickness is measured
+    """
     geometry, duration = geometry_of(run, folder), duration_s(run, span)
     patch, count = patches_of(surface, geometry.surface, geometry.patch), len(geometry.table)
     size = areas(surface.points, surface.triangles)
@@ -100,12 +129,14 @@ def patch_rows(run: Parameters, span: Span, folder: Path, surface: SurfaceMesh, 
     )
     removed = surface.point_data.get(REMOVED_THICKNESS, np.zeros(len(surface.points)))[surface.triangles].mean(axis=1)
     edge = edge_lengths_per_triangle(surface.points, surface.triangles).mean(axis=1)
+    recession = SECONDS_PER_HOUR * per_area(rate_volume(run, surface, ledger))
     return table.assign(
         **_block(span, duration),
         area_m2=area,
         edge_m=patch_means(edge, size, patch, count),
         depth_m=patch_means(removed, size, patch, count),
-        recession_m_per_h=SECONDS_PER_HOUR * per_area(rate_volume(run, surface, ledger)),
+        recession_m_per_h=recession,
+        back_recession_m_per_h=geometry.behind @ recession,
         pressure_Pa=per_area(ledger["normal_impulse_N_s"].to_numpy()),
         sliding_velocity_m_per_s=np.divide(work, impulse, out=np.zeros(count), where=impulse > 0.0),
         sliding_power_W_per_m2=per_area(ledger["sliding_work_J"].to_numpy()),
@@ -163,11 +194,11 @@ def patch_tables(folder: Path, last: int, phases: tuple[str, ...] = ()) -> list[
 
 
 def urgency(run: Parameters, table: pd.DataFrame) -> np.ndarray:
-    """Return recession over the depth that each patch may lose (1/h), by which places are ordered; over 1 m where that
-    is not known, or nothing.
+    """Return by how much each patch gets thinner over the depth that it may lose (1/h), by which places are ordered;
+    over 1 m where that is not known, or nothing.
     """
     allowed = allowed_depths(table["thickness_m"].to_numpy(), run["operation"])
-    return table["recession_m_per_h"].to_numpy() / np.where(np.isfinite(allowed), allowed, 1.0)
+    return thinning(table).to_numpy() / np.where(np.isfinite(allowed), allowed, 1.0)
 
 
 def deciding_width(run: Parameters, tables: list[pd.DataFrame]) -> float:

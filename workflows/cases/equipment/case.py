@@ -45,7 +45,8 @@ class Equipment(Case):
     seed_setting = "bulk.seed"
     figure_modules = ("figures", "map_figures", "flow_figures", "lifter_figures")
     geometry = ("parts", "particle", "inlet", "filling", "outlets", "periodic", "domain")
-    consumed = ("wear", "remeshing", "parts", "sampling", "start_up", "updates")
+    through_files = ("inlet", "outlets", "periodic", "domain")  # the solver reads them from files beside its decks
+    consumed = ("wear", "remeshing", "parts", "sampling", "start_up", "updates", *through_files)
     only_told = (*Case.only_told, "change_out_remaining_m", "change_out_by_mass")
     first_title = "start-up"
     leftovers = ()
@@ -111,9 +112,10 @@ class Equipment(Case):
         return SliceEnds("xyz".index(ends["axis"]), ends["low_m"], ends["high_m"]) if ends else None
 
     def surface_mesh(self, geometry: Parameters) -> SurfaceMesh:
-        """Return all parts as one surface, each in the frame it was drawn in. Raises ConfigError for a machine that
-        cannot be simulated.
+        """Return all parts as one surface, each in the frame it was drawn in, its sharp edges and hollows known as
+        built. Raises ConfigError for a machine that cannot be simulated.
         """
+        from bulkwear.postproc.wear.built_shape import with_built_shape
         from bulkwear.workflows.cases.equipment.machine_checks import check_machine, check_units
         from bulkwear.workflows.cases.equipment.surfaces import machine_surface, on_ends, open_ends
 
@@ -123,7 +125,7 @@ class Equipment(Case):
             check_units(geometry)  # a wrong unit may be why
             raise
         check_machine(geometry, surface)
-        return open_ends(surface, geometry)
+        return with_built_shape(open_ends(surface, geometry))
 
     # ---------------------------------------------------------------- decks
 

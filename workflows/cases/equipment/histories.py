@@ -21,7 +21,7 @@ LONGEST_ROWS = 2000  # of a run in the table of the flow
 
 def flow_series(runs: Runs) -> pd.DataFrame:
     """Return the flow of every run over simulated time: run, setting, packing, time_s, in_t_per_h, out_t_per_h,
-    held_kg, power_<part>_kW. All are evened out over a few reports.
+    held_kg, power_<part>_kW, NaN where it is not known. All are evened out over a few reports.
     """
     return pd.concat([_series_of(table) for _, table in runs.flow.groupby("run", sort=False)], ignore_index=True)
 
@@ -32,11 +32,16 @@ def _series_of(flow: pd.DataFrame) -> pd.DataFrame:
     inside = slice(half, len(flow) - half) if len(flow) > 2 * half else slice(None)
     time = flow["time_s"].to_numpy()
 
+    def bell(values: np.ndarray) -> np.ndarray:
+        return gaussian_filter1d(values, half / DEVIATIONS, mode="nearest", truncate=DEVIATIONS)
+
     def smooth(column: str, since_start: bool = False) -> np.ndarray:
-        values = np.nan_to_num(flow[column].to_numpy(float))
-        return gaussian_filter1d(
-            values - since_start * values[0], half / DEVIATIONS, mode="nearest", truncate=DEVIATIONS
-        )
+        values = flow[column].to_numpy(float)
+        known = np.isfinite(values)
+        sums = bell(np.where(known, values - values[0] if since_start else values, 0.0))
+        if known.all():
+            return sums
+        return np.divide(sums, bell(known.astype(float)), out=np.full(len(values), np.nan), where=known)
 
     def rate(column: str) -> np.ndarray:
         counted = smooth(column, since_start=True)  # exactly none in a machine that is filled once

@@ -1,10 +1,11 @@
 """When a part has to be changed: the place that decides, its life with an interval, what is left there along the way.
 
-A place is an area patch, or the whole part where the rule speaks of its mass. What it loses is followed as long as the
-shape was worn, and goes on from there at the mean rate of the last blocks. The load of a place is one over
-its life; the place that decides has the largest. Each packing's value is that of the place which all others name, so
-that it is not lifted by being chosen (`postproc.statistics.worst_place`); of one packing see `_of_one`. A place that a
-single packing would have changed much earlier is told beside.
+A place is an area patch, or the whole part where the rule speaks of its mass. Where its thickness is measured it gets
+thinner from behind as well. What it loses is followed as long as the shape was worn, and goes on from there at the mean
+rate of the last blocks. The load of a place is one over its life; the place that decides has the largest. Each
+packing's value is that of the place which all others name, so that it is not lifted by being chosen
+(`postproc.statistics.worst_place`); of one packing see `_of_one`. A place that a single packing would have changed much
+earlier is told beside.
 """
 
 from __future__ import annotations
@@ -130,6 +131,13 @@ class PartLife:
 # ---------------------------------------------------------------- courses
 
 
+def thinning(patches: pd.DataFrame) -> pd.Series:
+    """Return by how much each patch gets thinner (m/h): by its own recession, and by that of its back where the
+    thickness is measured. patches: rows as from `blocks.patch_rows`
+    """
+    return patches["recession_m_per_h"] + patches["back_recession_m_per_h"]
+
+
 def patch_courses(runs: Runs, setting: str, part: str) -> tuple[pd.DataFrame, list[Course]]:
     """Return the places of a part in a setting, a row per patch, and the course of each packing."""
     chosen = (runs.patches["setting"] == setting) & (runs.patches["part"] == part)
@@ -137,7 +145,8 @@ def patch_courses(runs: Runs, setting: str, part: str) -> tuple[pd.DataFrame, li
     places = rows.drop_duplicates("patch").sort_values("patch").set_index("patch")
     courses = []
     for packing, table in rows.groupby("packing", sort=False):
-        rates = table.pivot(index="cycle", columns="patch", values="recession_m_per_h").reindex(columns=places.index)
+        table = table.assign(rate=thinning(table))
+        rates = table.pivot(index="cycle", columns="patch", values="rate").reindex(columns=places.index)
         courses.append(_course(packing, _cycles(table), rates.fillna(0.0).to_numpy()))
     return places, courses
 

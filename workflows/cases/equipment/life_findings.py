@@ -16,6 +16,7 @@ TOO_WIDE = 100.0  # -, of the ends of an interval that tells nothing
 DIGITS = 2  # significant ones of an answer, whose interval is wide
 LEAST_RATE_CHANGE = 1.1  # -, factor of a rate by wear of the shape, from which on its further change is asked for
 FROM_ONE = 1.0  # number of packings of which the scatter is unknown
+OF_ONE_COEFFICIENT = ("material", "law", "wear_coefficient_per_pa")  # parts alike in them have one error of it
 PER_CENT = f"{100.0 * CONFIDENCE:.0f} %"
 RUNNING = "the wear is not spread along the way that it goes round, so that its life is too short"
 
@@ -51,9 +52,10 @@ def answers_on_first_change(life: pd.DataFrame, steel: pd.DataFrame) -> list[str
     """Return of each setting which part has the shortest life, and whether it is surely changed first; nothing where
     each has one part alone. Parts that wear and whose life cannot be said may be changed earlier.
 
-    steel: with the material of each part: parts of one share the error of its coefficient, which decides nothing then
+    steel: with OF_ONE_COEFFICIENT of each part: parts alike in them share the error of their coefficient, which decides
+        nothing then
     """
-    known = life[np.isfinite(life["life_h"])].merge(steel[["setting", "part", "material"]], how="left")
+    known = life[np.isfinite(life["life_h"])].merge(steel[["setting", "part", *OF_ONE_COEFFICIENT]], how="left")
     if not known.duplicated("setting").any():
         return []
     several, said = life["setting"].nunique() > 1, []
@@ -76,7 +78,8 @@ def lasts_longer(row: pd.Series, first: pd.Series) -> bool:
     """
     if not min(row.packings, first.packings) > FROM_ONE:
         return False
-    interval = "scatter" if row.material == first.material else "life"
+    one = all(row[name] == first[name] for name in OF_ONE_COEFFICIENT)
+    interval = "scatter" if one else "life"
     reaches = (math.log(row.life_h / row[f"{interval}_low_h"]), math.log(first[f"{interval}_high_h"] / first.life_h))
     return math.log(row.life_h / first.life_h) > math.hypot(*reaches)
 

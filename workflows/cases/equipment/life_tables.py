@@ -251,14 +251,23 @@ def how_told(hours: float, worn_for: float) -> str:
 # ---------------------------------------------------------------- steel
 
 
+def law_words(part: Mapping[str, Any]) -> str:
+    """Return the wear law of a part with its parameters (SI), alike for parts that wear by the same one."""
+    given = sorted((part.get("law_parameters") or {}).items())
+    return ", ".join([part["law"], *(f"{name} {value!r}" for name, value in given)])
+
+
 def steel_table(runs: Runs, lives: Lives) -> pd.DataFrame:
-    """Return a row per setting and part: mass lost per hour as built and worn, per Mt, and until it is changed."""
+    """Return a row per setting and part: its material, wear coefficient and law, mass lost per hour as built and worn,
+    per Mt, and until it is changed.
+    """
     rows = []
     for (setting, part), life in lives.items():
         run, table = runs.first(setting), runs.parts
         blocks = table[(table["setting"] == setting) & (table["part"] == part)]
         density, row = run["parts"][part]["density_kg_per_m3"], {"setting": setting, "part": part}
-        row["material"] = run["parts"][part]["material"]
+        row |= {name: run["parts"][part][name] for name in ("material", "wear_coefficient_per_pa")}
+        row["law"] = law_words(run["parts"][part])
         for phase in KEPT:
             found = over_packings(blocks[blocks["phase"] == phase], "worn_mass_kg_per_h")
             low, high = found.interval()

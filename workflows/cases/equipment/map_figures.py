@@ -168,7 +168,8 @@ def wear_map(job: Job) -> Any:
     caption="""
     Thickness left as built, after the last simulated hour, and at the hours that the study wants told, of the first
     packing of each design. Between updates, and from the last one on, each face loses as much as its area patch,
-    after the last one at the mean rate of the last shape. Red: as thin as the part is changed at, or thinner. Grey:
+    after the last one at the mean rate of the last shape. What caps on the updates hold back counts as lost, evenly
+    over each area patch. Red: as thin as the part is changed at, or thinner. Grey:
     no back lies behind, so no thickness is known. The scale ends at the thickness as built below which three
     quarters of the wear is; thicker places take the top colour. Views as in the map of wear.
     """,

@@ -1,7 +1,8 @@
 """Maps of what is left of the parts that wear: as built, after the last simulated hour, and at hours that are wanted.
 
 An hour between updates, or after the last one, has the surface of the update before: from there on each face loses as
-much as its area patch does, as in the table of what is left.
+much as its area patch does, as in the table of what is left. What the caps of the updates held back, and is not on that
+surface yet, is lost as well, evenly over each patch.
 """
 
 from __future__ import annotations
@@ -15,8 +16,10 @@ import pandas as pd
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas, read_surface, worn_faces
 from bulkwear.postproc.readers.cycle_folders import cycle_files
+from bulkwear.postproc.tables.depths import face_depth
 from bulkwear.postproc.tables.display import MILLIMETRES, few_digits
-from bulkwear.postproc.wear.area_patches import area_patches, patches_of
+from bulkwear.postproc.wear.area_patches import area_patches, patch_means, patches_of
+from bulkwear.postproc.wear.fields import REMOVED_THICKNESS
 from bulkwear.postproc.wear.side import turned_as
 from bulkwear.postproc.wear.thickness import (
     BACK_LOST_THICKNESS,
@@ -24,6 +27,7 @@ from bulkwear.postproc.wear.thickness import (
     remaining_thickness,
     thickness_to_back,
 )
+from bulkwear.workflows.cases.equipment.blocks import patches_behind
 from bulkwear.workflows.cases.equipment.life import patch_courses
 from bulkwear.workflows.cases.equipment.life_tables import (
     BEYOND,
@@ -69,16 +73,35 @@ def states_of(run: Run, folder: Path) -> list[State]:
     place, states = folder / run["run"], []
     shapes, tables, pristine = _shapes(place), read_runs([run], folder), read_surface(place / SURFACE)
     patches, worn_for = area_patches(pristine, run["patch_m"]), shapes[-1][0]
+    behind = patches_behind(pristine, patches, _given(run))
     of_parts = [patch_courses(tables, run["setting"], part) for part in wearing(run)]
     for hours in hours_apart([0.0, worn_for, *wanted_hours(run["operation"])]):
         since, file = next(shape for shape in reversed(shapes) if shape[0] <= hours * (1.0 + HOURS_OF_REMAINING))
         surface = read_surface(file)
-        patch, lost = patches_of(surface, pristine, patches), np.zeros(patches.max() + 1)
+        patch = patches_of(surface, pristine, patches)
+        held = held_back(surface, patch, patches.max() + 1)
+        lost = held + behind @ held
         for places, (course,) in of_parts:
-            lost[places.index] = course.at(hours) - course.at(min(since, hours))
+            lost[places.index] += course.at(hours) - course.at(min(since, hours))
         left = left_of_faces(surface, pristine) - np.where(patch >= 0, lost[patch], 0.0)
         states.append(State(hours, how_told(hours, worn_for), surface, patch, np.maximum(left, 0.0)))
     return states
+
+
+def _given(run: Run) -> list[int]:
+    """Return the labels of the parts whose thickness is given."""
+    labels = labels_of(run)
+    return [labels[name] for name, part in run["parts"].items() if part["thickness_m"] is not None]
+
+
+def held_back(surface: SurfaceMesh, patch: np.ndarray, count: int) -> np.ndarray:
+    """Return the depth (count,) m that the law took of each patch and caps on the updates hold back, 0 of none.
+
+    patch: (m,) of each face, negative without
+    """
+    removed = surface.point_data[REMOVED_THICKNESS][surface.triangles].mean(axis=1)
+    held, size = face_depth(surface, deformed=True) - removed, areas(surface.points, surface.triangles)
+    return np.nan_to_num(patch_means(held, size, patch, count))
 
 
 def left_of_faces(surface: SurfaceMesh, pristine: SurfaceMesh) -> np.ndarray:

@@ -154,10 +154,20 @@ def rates_table(runs: Runs) -> pd.DataFrame:
                 row[f"{phase}_{name}mm_per_1000h"] = value * MILLIMETRES * HOURS
             row[f"{phase}_mm_per_Mt"] = found.value * MILLIMETRES / per_mt
         pristine = table[table["phase"] == PRISTINE]
-        rows.append(row | {name: over_packings(pristine, name).value for name in AT_A_PATCH})
+        rows.append(row | {name: over_packings(pristine, name).value for name in AT_A_PATCH} | _sliding(pristine))
     order = {pair: number for number, pair in enumerate(runs.wearing_parts)}
     rows.sort(key=lambda row: (order.get((row["setting"], row["part"]), len(order)), row["patch"]))
     return pd.DataFrame(rows)
+
+
+def _sliding(blocks: pd.DataFrame) -> dict[str, float]:
+    """Return the sliding velocity of a patch, power over pressure of each packing: weighted by the normal force, and
+    not by blocks, of which some may not touch it; over packings that do.
+    """
+    of_packing = blocks.groupby("packing")[["sliding_power_W_per_m2", "pressure_Pa"]].mean()
+    pressed = of_packing[of_packing["pressure_Pa"] > 0.0]
+    found = (pressed["sliding_power_W_per_m2"] / pressed["pressure_Pa"]).mean()
+    return {"sliding_velocity_m_per_s": found if len(pressed) else 0.0}
 
 
 def over_packings(blocks: pd.DataFrame, column: str, log: bool = False) -> Estimate:

@@ -270,7 +270,9 @@ def _write_patches(inside, table, head, patch, size, depth):
     rate = table["recession_m_per_h"]
     loads = {"pressure_Pa": 1e9 * rate, "sliding_velocity_m_per_s": np.where(rate > 0.0, 2.0, 0.0)}
     loads |= {"sliding_power_W_per_m2": 2e9 * rate, "impact_power_W_per_m2": 1e8 * rate}
-    table.assign(**head, depth_m=depths, **loads).to_csv(inside / "patches.csv", index=False)
+    table.assign(**head, depth_m=depths, back_recession_m_per_h=0.0, **loads).to_csv(
+        inside / "patches.csv", index=False
+    )
 
 
 def _write_parts(inside, head, labels, mesh, volume):

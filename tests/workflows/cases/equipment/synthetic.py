@@ -40,6 +40,7 @@ class SyntheticPart:
     recession: tuple[float, ...] = ()
     worn: float = 1.0
     thickness: float | None = 0.03
+    behind: float = 0.0  # recession of the back over that of the front
     coefficient: float = 6e-13
     error: float = 0.0
     force: float = 100.0
@@ -183,7 +184,11 @@ def _patches(run: SyntheticRun, head: Mapping[str, Any], factor: float, depths: 
                 **{"normal_x": 0.0, "normal_y": 0.0, "normal_z": 1.0},
                 **{"area_m2": SIDE**2, "edge_m": SIDE},
                 "thickness_m": np.nan if part.thickness is None else part.thickness,
-                **{"depth_m": depths[part.name], "recession_m_per_h": rate},
+                **{
+                    "depth_m": depths[part.name],
+                    "recession_m_per_h": rate,
+                    "back_recession_m_per_h": part.behind * rate,
+                },
                 **{"pressure_Pa": 1e9 * rate, "sliding_velocity_m_per_s": 2.0},
                 **{"sliding_power_W_per_m2": 2e9 * rate, "impact_power_W_per_m2": 1e8 * rate},
             }

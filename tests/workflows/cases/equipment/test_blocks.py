@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.mesh import areas, shortest_edge_at_nodes, write_surface
+from bulkwear.postproc.mesh import areas, shortest_edge_at_nodes, unit_normals, write_surface
 from bulkwear.postproc.statistics.intervals import error_of_mean, students_t
 from bulkwear.postproc.wear.area_patches import patches_of
 from bulkwear.postproc.wear.kernels import kernel_column
@@ -135,7 +135,7 @@ def test_doubled_coefficients_double_recession_and_nothing_else(machine):
     ]
     harder, once = rows(machine, run={**machine.run, "parts": parts}), rows(machine)
     np.testing.assert_allclose(harder["recession_m_per_h"], 2.0 * once["recession_m_per_h"], rtol=ROUND_OFF)
-    same = [name for name in once if name != "recession_m_per_h"]
+    same = [name for name in once if not name.endswith("recession_m_per_h")]
     pd.testing.assert_frame_equal(harder[same], once[same])
     loaded = rows(machine, ledger=2.0 * machine.ledger)
     for name in ("recession_m_per_h", "pressure_Pa"):
@@ -156,6 +156,28 @@ def test_thickness_is_given_or_measured(machine):
     np.testing.assert_allclose(found.get_group("liner"), 0.03, rtol=ROUND_OFF)
     assert found.get_group("plate").min() == pytest.approx(0.03, rel=1e-4)
     assert blocks.given_thickness(machine.run) == {0: 0.03}
+
+
+def test_a_measured_thickness_is_lost_from_behind_too(machine):
+    """The recession of what lies behind a patch is that of the plate's other face; behind the liner, whose thickness is
+    given, nothing counts.
+    """
+    across = machine.surface.points[machine.surface.triangles].mean(axis=1)[:, 0]
+    plate = faces(machine, 1)
+    thin = unit_normals(machine.surface.points, machine.surface.triangles)[:, 0]
+    back = plate & (thin > 1.0 - ROUND_OFF)  # x is across its thin side
+    assert across[back].min() > across[plate & (thin < ROUND_OFF - 1.0)].max()
+    size = areas(machine.surface.points, machine.surface.triangles)
+    evenly = np.where(back, size, 0.0)  # on that face alone
+    found = rows(machine, ledger=machine.ledger.assign(**dict.fromkeys(machine.ledger, evenly)))
+    front = found[(found["part"] == "plate") & (found["normal_x"] < -0.99)]
+    there = found[(found["part"] == "plate") & (found["normal_x"] > 0.99)]
+    assert len(front) and not front["recession_m_per_h"].any()
+    np.testing.assert_allclose(
+        front["back_recession_m_per_h"], there["recession_m_per_h"].mean(), rtol=ROUND_OFF * len(size)
+    )
+    assert not there["back_recession_m_per_h"].any()
+    assert not found.loc[found["part"] == "liner", "back_recession_m_per_h"].any()
 
 
 def test_depth_is_what_was_removed_before_the_block(machine):
@@ -213,7 +235,9 @@ def test_wear_of_a_block_is_its_rate_for_the_operation_it_stands_for(machine):
 def tables_of(rates, thickness=(0.01, 0.03, np.nan), edge=0.02):
     """Tables of blocks with three patches; rates: (blocks, 3) m/h."""
     return [
-        pd.DataFrame({"recession_m_per_h": rate, "thickness_m": thickness, "edge_m": edge, "phase": "pristine"})
+        pd.DataFrame({"recession_m_per_h": rate, "thickness_m": thickness, "edge_m": edge, "phase": "pristine"}).assign(
+            back_recession_m_per_h=0.0
+        )
         for rate in np.asarray(rates, float)
     ]
 

@@ -115,6 +115,18 @@ def test_power_is_in_kilowatts(mill):
     np.testing.assert_allclose(flow_series(read_runs(runs, folder))["power_shell_kW"], 1.5)
 
 
+def test_power_that_is_not_known_is_none(mill):
+    """No curve there, and no rise from 0 after it."""
+    folder, runs = mill
+    read = read_runs(runs, folder)
+    unknown = read.flow["time_s"].median()
+    flow = read.flow.assign(power_shell_W=read.flow["power_shell_W"].mask(read.flow["time_s"] <= unknown))
+    series = flow_series(replace(read, flow=flow))
+    after = series["time_s"] > unknown
+    assert after.any() and not after.all() and series.loc[~after, "power_shell_kW"].isna().all()
+    np.testing.assert_allclose(series.loc[after, "power_shell_kW"], 1.5)
+
+
 def test_phases_follow_one_another(chute):
     """From 0 to the end of the run without gaps, for every setting."""
     folder, runs = chute

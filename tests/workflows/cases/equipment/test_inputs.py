@@ -45,6 +45,22 @@ def test_hours_of_a_shape_that_is_kept_are_not(tmp_path):
 
 
 @pytest.mark.parametrize(
+    "changes",
+    [
+        {"inlet": {"centre_mm": [-60, 0, 161]}},
+        {"inlet": {"size_mm": [70, 80]}},
+        {"inlet": {"normal": [0.1, 0, -1]}},
+        {"outlets": {"below": {"centre_mm": [0, 0, -346]}}},
+        {"outlets": {"below": {"size_mm": [890, 800]}}},
+        {"domain": {"low_mm": [-600, -300, -500], "high_mm": [600, 300, 300]}},
+    ],
+)
+def test_what_the_solver_reads_beside_its_decks_is_another_simulation(tmp_path, before, changes):
+    """Inlet, outlets and domain stand in files of their own: neither decks nor surface change with them."""
+    assert digest(tmp_path, **changes) != before
+
+
+@pytest.mark.parametrize(
     "operation",
     [
         {"hours_per_year_h": 8000},

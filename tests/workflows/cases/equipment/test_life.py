@@ -67,6 +67,14 @@ def test_life_is_thickness_over_rate(lives):
     assert row["allowed_mm"] == pytest.approx(30.0) and row["rule"] == "worn through"
 
 
+def test_a_plate_that_wears_on_both_faces_lasts_half_as_long(lives):
+    """Where its thickness is measured, by which it is told; and so is what is left of it."""
+    runs, found, table = lives(replace(ONE, parts=(replace(UNIFORM, behind=1.0),)))
+    assert table["life_h"].iloc[0] == pytest.approx(0.5 * THICKNESS / RATE, rel=RELATIVE)
+    left = life_tables.remaining_table(runs, found).set_index("operation_h")["remaining_mm"]
+    assert left[300.0] == pytest.approx(1e3 * (THICKNESS - 2.0 * 300.0 * RATE))
+
+
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 def test_twice_the_rate_halves_the_life(lives, factor):
     """Load, coefficient and hours enter the rate as factors."""

@@ -5,29 +5,33 @@ import math
 import pandas as pd
 
 from bulkwear.postproc.statistics.intervals import UNKNOWN
-from bulkwear.workflows.cases.equipment.life_findings import answers_on_first_change
+from bulkwear.workflows.cases.equipment.life_findings import OF_ONE_COEFFICIENT, answers_on_first_change
 
 
 def lives_of(*rows, packings=3):
-    """Tables of lives and of steel: part, material, life, and by what factor scatter and all together reach."""
+    """Tables of lives and of steel: part, material (or material, law), life, by what factor scatter and all reach."""
     table = pd.DataFrame(rows, columns=["part", "material", "life_h", "scatter", "both"]).assign(setting="plain")
+    of_law = table["material"].str.partition(", ")
+    table = table.assign(material=of_law[0], law=of_law[2], wear_coefficient_per_pa=1e-12)
     ends = {
         f"{name}_{end}_h": table["life_h"] * table[of] ** sign
         for name, of in (("scatter", "scatter"), ("life", "both"))
         for end, sign in (("low", -1.0), ("high", 1.0))
     }
     life = table.assign(**ends, packings=packings, coefficient_error=0.3, reason="")
-    return life.drop(columns="material"), table[["setting", "part", "material"]]
+    return life.drop(columns=[*OF_ONE_COEFFICIENT]), table[["setting", "part", *OF_ONE_COEFFICIENT]]
 
 
 def test_a_part_is_changed_first_where_the_intervals_tell_so():
-    """Of one steel its coefficient decides nothing, of two it does; where lives are too near the shortest is told."""
+    """Of one steel and law its coefficient decides nothing, of two it does; of lives too near the shortest is told."""
     near, far = ("plate", "steel", 750.0, 1.1, 1.5), ("liner", "steel", 900.0, 1.1, 1.5)
     (said,) = answers_on_first_change(*lives_of(far, near))
     assert said == "The plate is changed first, after 750 h (500 to 1,100 h, 95 %)."
     (said,) = answers_on_first_change(*lives_of(("liner", "rubber", *far[2:]), near))
     open_ = "whether the liner is changed before it cannot be said."
     assert said == f"The plate has the shortest life, 750 h (500 to 1,100 h, 95 %); {open_}"
+    (said,) = answers_on_first_change(*lives_of(("liner", "steel, finnie", *far[2:]), near))
+    assert said.endswith(open_)  # by a law of its own
     (said,) = answers_on_first_change(*lives_of(("liner", "steel", 800.0, 1.1, 1.5), near))
     assert said.endswith(open_)  # the ratio is 1.07, its interval reaches by a factor of 1.14
     assert answers_on_first_change(*lives_of(near)) == []

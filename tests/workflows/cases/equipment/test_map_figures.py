@@ -1,5 +1,7 @@
 """Figures of where parts wear, how long they last and what is left, of machines whose wear is known."""
 
+import shutil
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
@@ -7,8 +9,18 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.mesh import SurfaceMesh, centroids, read_surface, unit_normals, write_surface
+from bulkwear.postproc.mesh import (
+    SurfaceMesh,
+    areas,
+    centroids,
+    read_surface,
+    sum_over_nodes,
+    unit_normals,
+    worn_faces,
+    write_surface,
+)
 from bulkwear.postproc.tables.display import few_digits
+from bulkwear.postproc.wear.fields import CARRIED_VOLUME
 from bulkwear.postproc.wear.side import turned_to_flow, with_sides
 from bulkwear.workflows.cases.equipment import map_figures, pictures, remaining
 from bulkwear.workflows.cases.equipment.life_tables import BEYOND, SIMULATED
@@ -99,6 +111,7 @@ def test_what_is_left_is_what_was_there_less_what_was_lost(study):
     assert least == pytest.approx(late.values[pictures.REMAINING].min(), rel=ROUNDED)
 
 
+HELD_M = 1e-3  # m, that caps hold back everywhere
 MUCH_LATER = 20.0  # -, of the simulated hours: the worst place is worn through by then
 
 
@@ -128,6 +141,23 @@ def test_wanted_hours_lie_between_and_beyond_those_of_the_surfaces(study):
     np.testing.assert_allclose(left[0.0] - left[early], step, rtol=ROUNDED, atol=ROUNDED)
     np.testing.assert_allclose(left[end] - left[later], step, rtol=ROUNDED, atol=ROUNDED)
     assert left[latest].min() == 0.0
+
+
+def test_what_caps_hold_back_is_lost_on_maps(study, tmp_path):
+    """A patch's carried volume over its area, beside what is gone from the surface."""
+    folder, runs, _ = study
+    (run,) = pictures.first_runs(runs)[:1]
+    place = shutil.copytree(folder / run["run"], tmp_path / run["run"])
+    before = remaining.states_of(run, tmp_path)[-1]
+    worn = read_surface(place / remaining.WORN_SURFACE)
+    faces = worn.triangles[worn_faces(worn)]
+    node_area = sum_over_nodes(faces, areas(worn.points, faces), len(worn.points)) / 3.0
+    fields = worn.point_data | {CARRIED_VOLUME: HELD_M * node_area}
+    write_surface(place / remaining.WORN_SURFACE, replace(worn, point_data=fields))
+    after = remaining.states_of(run, tmp_path)[-1]
+    enough = before.left > 2.0 * HELD_M
+    assert enough.any()
+    np.testing.assert_allclose((before.left - after.left)[enough], HELD_M, rtol=ROUNDED)
 
 
 def test_figure_of_many_wanted_hours_is_readable(study):

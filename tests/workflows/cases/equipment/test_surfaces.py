@@ -17,6 +17,10 @@ from bulkwear.postproc.mesh import (
     unit_normals,
 )
 from bulkwear.postproc.wear.bodies import body, together
+from bulkwear.postproc.wear.built_shape import PANEL, PRISTINE_RISE
+from bulkwear.postproc.wear.mesh_faults import with_target_edges
+from bulkwear.postproc.wear.side import with_sides
+from bulkwear.postproc.wear.update import wear_update
 from bulkwear.workflows.cases.equipment import surfaces
 from bulkwear.workflows.cases.equipment.surfaces import (
     faces_of,
@@ -30,12 +34,22 @@ from bulkwear.workflows.cases.equipment.surfaces import (
     room_needed,
 )
 from bulkwear.workflows.config.layers import ConfigError
-from tests.support.own_machine_project import CORNERS, SETTINGS, SIZES, TINY, Machine, drawings, machine_study
+from tests.support.own_machine_project import (
+    CORNERS,
+    SETTINGS,
+    SIZES,
+    SLOPE_DEG,
+    TINY,
+    Machine,
+    drawings,
+    machine_study,
+)
 from tests.support.own_solids import SIZES as SOLID_SIZES
 from tests.support.own_solids import bodies, box, write_ascii, write_binary, write_bodies
 
 VOLUME = 1e-6  # relative; binary numbers of a text file
 ROUND_OFF = 1e-12
+OFF_M, EVEN = 2e-4, 1e-9  # m, that a flat top loses; relative, of the flat and even loss in closed form
 TURN_MISSED = 2e-3  # relative; corners of a turning box between two of 64 looks at a turn: 1 - cos(pi / 64)
 
 
@@ -45,6 +59,24 @@ def machine(tmp_path_factory):
     with machine_study(tmp_path_factory.mktemp("surfaces")) as study:
         run = study.runs[0].parameters
         yield SimpleNamespace(run=run, parts=run["parts"], surface=machine_surface(run["parts"]))
+
+
+def test_edges_and_hollows_as_built_are_no_pits(tmp_path):
+    """The inside of a trough that loses the same everywhere on its floor loses that at the corner to its walls too, and
+    the top of the liner at its edges.
+    """
+    with machine_study(tmp_path) as study:
+        surface = study.case.surface_mesh(study.case.surface_sections(study.runs[0].parameters))
+    assert {PANEL, "part"} <= set(surface.cell_data) and PRISTINE_RISE in surface.point_data
+    built = with_target_edges(with_sides(surface))
+    slope = np.radians(SLOPE_DEG)
+    top = (built.cell_data["part"] == 0) & (
+        unit_normals(built.points, built.triangles) @ (np.sin(slope), 0.0, np.cos(slope)) > 1.0 - ROUND_OFF
+    )
+    worn, _ = wear_update(built, np.where(top, OFF_M * areas(built.points, built.triangles), 0.0))
+    nodes = np.unique(built.triangles[top])
+    lost = (built.points - worn.points)[nodes] @ (np.sin(slope), 0.0, np.cos(slope))
+    np.testing.assert_allclose(lost, OFF_M, rtol=EVEN)
 
 
 def test_labels_say_which_part_and_whether_it_wears(machine):

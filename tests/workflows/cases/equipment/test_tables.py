@@ -51,6 +51,17 @@ def test_rates_are_those_of_the_blocks(read):
     assert per_mt == pytest.approx(4.0 / mt_per_1000_hours, rel=RELATIVE)
 
 
+def test_sliding_velocity_is_weighted_by_the_normal_force(read):
+    """A patch that one block of a packing touches, at 8 m/s: the others do not slow it down; 0 where none touches."""
+    runs = read(packings())
+    touched = (runs.patches["cycle"] == 1) & (runs.patches["patch"] == 1)
+    pressure = np.where(touched, 50.0, 0.0)
+    told = {"pressure_Pa": pressure, "sliding_power_W_per_m2": 8.0 * pressure, "sliding_velocity_m_per_s": 8.0}
+    found = tables.rates_table(replace(runs, patches=runs.patches.assign(**told))).set_index(["part", "patch"])
+    velocity = found.loc["liner", "sliding_velocity_m_per_s"]
+    assert velocity[1] == pytest.approx(8.0) and (velocity.drop(1) == 0.0).all()
+
+
 def test_interval_is_over_packings(read):
     """Of three packings 0.1 apart it is Student's t on two degrees of freedom; of one packing there is none."""
     three, one = (tables.rates_table(read(packings(factors=factors))).iloc[0] for factors in (SPREAD, (1.0,)))
