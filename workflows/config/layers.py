@@ -312,7 +312,8 @@ def dotted(path: KeyPath) -> str:
 
 
 def read_csv_rows(path: Path, root: Path) -> tuple[list[str], list[tuple[int, dict[str, str]]]]:
-    """Return the header and, for every row that is not blank, (line in the file, {column: text}).
+    """Return the header and, for every row that is not blank, (line in the file, {column: text}); columns on the right
+    that are empty all down are left out.
 
     Raises ConfigError for an empty file, no rows, an unnamed or repeated column, a row of another length, and a cell
     with a line break or other letters that do not print.
@@ -324,6 +325,8 @@ def read_csv_rows(path: Path, root: Path) -> tuple[list[str], list[tuple[int, di
     except csv.Error as error:
         raise ConfigError(f"{source}, line {reader.line_num}: {error}, allowed is a table of short cells.") from None
     filled = [(line, cells) for line, cells in lines if any(cells)]
+    width = max((number for _, cells in filled for number, cell in enumerate(cells, start=1) if cell), default=0)
+    filled = [(line, cells[: max(width, 1)]) for line, cells in filled]  # a spreadsheet leaves empty columns behind
     if not filled:
         raise ConfigError(f"{source}: the file is empty, allowed is a header and one row or more.")
     (header_line, header), rows = filled[0], filled[1:]

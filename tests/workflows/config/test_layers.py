@@ -17,10 +17,10 @@ def test_text_in_another_encoding_is_refused(config):
 
 
 def test_a_table_from_a_spreadsheet_is_read(config):
-    """Byte order mark, CRLF, spaces and blank lines change nothing."""
+    """Byte order mark, CRLF, spaces, blank lines and empty columns on the right change nothing."""
     plain = load_study("small", config.project)
     text = config.path(TABLE).read_text(encoding="utf-8")
-    spread = "\ufeff" + text.replace("\n", "\r\n\r\n").replace(",", " , ")
+    spread = "\ufeff" + text.replace("\n", ",,\r\n,,\r\n").replace(",", " , ")
     config.path(TABLE).write_bytes(spread.encode())
     assert load_study("small", config.project) == plain
 

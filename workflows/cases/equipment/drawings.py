@@ -33,7 +33,11 @@ def drawing_source(name: str) -> Path:
 
 
 def _nearest(name: str) -> str:
-    """Return which file of the folder has nearly that name, in brackets, where there is one."""
+    """Return which file of the folder has nearly that name, in brackets, where there is one; of a name with backslashes
+    how folders are parted.
+    """
+    if "\\" in name:
+        return " (folders are parted by /)"
     try:
         beside = current_project().names(Path(MESHES, name).parent.as_posix(), "")
     except OSError:  # a name that no file system takes

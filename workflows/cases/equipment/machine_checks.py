@@ -39,7 +39,7 @@ from bulkwear.workflows.cases.equipment.drum_checks import check_drums
 from bulkwear.workflows.cases.equipment.motions import motion_of
 from bulkwear.workflows.cases.equipment.placing import filling_box, placing_room
 from bulkwear.workflows.cases.equipment.stream_checks import check_stream
-from bulkwear.workflows.cases.equipment.surfaces import faces_of, looks, room_needed
+from bulkwear.workflows.cases.equipment.surfaces import faces_of, looks, rectangle, room_needed
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.config.run_checks import millimetres
 
@@ -71,6 +71,7 @@ def check_machine(run: Parameters, surface: SurfaceMesh) -> None:
     for part, mesh in zip(run["parts"], parts, strict=True):
         _check_within(run, surface, part, mesh)
         _check_speed(run, part, mesh)
+    _check_stays(run, parts)
     check_drums(run["parts"], parts)
     _check_feed_speed(run)
     _check_inlet(run, parts)
@@ -189,6 +190,34 @@ def _check_speed(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> None:
             f" {max(ways) / step:.4g} m/s, allowed are {1e3 * most:.4g} mm, {WAY_OF_RADIUS:g} of the smallest radius:"
             " it would go through particles."
         )
+
+
+def _check_stays(run: Parameters, parts: Sequence[SurfaceMesh]) -> None:
+    """Raise ConfigError for a part whose motion takes it out of the machine, farther than it is long itself."""
+    end, openings = longest_s(run), filter(None, [run["inlet"], *(run["outlets"] or {}).values()])
+    rooms = [*(rectangle(each).points for each in openings), *([filling_box(run)] if run["filling"] else [])]
+    for part, mesh in zip(run["parts"], parts, strict=True):
+        if not part["motion"] or part["motion"]["kind"] != "translation":
+            continue
+        motion, others = motion_of(part["motion"]), [each.points for each in parts if each is not mesh]
+        if not (rooms or others):
+            continue
+        machine = np.concatenate([*rooms, *others])
+        way = _apart(motion.placed(mesh.points, end), machine) - _apart(mesh.points, machine)
+        if way > diagonal(mesh.points):
+            raise ConfigError(
+                f"parts.{part['name']}.motion.velocity_m_per_s takes {part['file']} out of the machine, {_length(way)}"
+                f" away from all else after {end:.4g} s, the longest that the run may get, allowed is a way within it:"
+                " wear would be counted in empty air; let it stop (stop_s), go slower, or the run be shorter"
+                " (start_up.most_s, sampling.block_s)."
+            )
+
+
+def _apart(points: np.ndarray, others: np.ndarray) -> float:
+    """Return the largest gap (m) between the boxes of two sets of points along an axis, 0 where they overlap."""
+    return float(
+        np.maximum(points.min(axis=0) - others.max(axis=0), others.min(axis=0) - points.max(axis=0)).max(initial=0.0)
+    )
 
 
 # ---------------------------------------------------------------- where material is placed

@@ -91,6 +91,13 @@ def test_the_nearest_drawing_is_named(project):
             drawing_source(f"feeder/{name}")
 
 
+def test_a_backslash_is_told(project):
+    """No nearest file, which would be another one: folders of other systems are parted otherwise."""
+    (project / "meshes/feeder/LID.step").write_text("")
+    with pytest.raises(ConfigError, match=r"LID\.step: there is no such file \(folders are parted by /\), and no"):
+        drawing_source("feeder\\LID.step")
+
+
 def test_neither_file_nor_script_is_one_sentence(project, tmp_path):
     """It names what is missing and what is allowed."""
     with pytest.raises(ConfigError, match=r"^meshes/hopper/box\.step: there is no such file, and no draw\.py"):

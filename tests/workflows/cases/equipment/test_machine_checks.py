@@ -184,6 +184,17 @@ def test_a_part_that_leaves_the_domain_on_its_way(run):
     assert "plate.stl stands out by" in message and "along x on its way, from -200 mm to" in message
 
 
+def test_a_part_that_leaves_the_machine(run):
+    """By a motion that goes on: how far it is then from all else; one that stops, or swings, may stay."""
+    floor = box((1.0, 0.2, 0.03), 0.05, (0.0, 0.0, -0.4))
+    on = {"kind": "translation", "velocity_m_per_s": [2.0, 0.0, 0.0]}
+    message = message_of(run, ("flight", PLATE, {"motion": on}), ("floor", floor, {}))
+    assert message.startswith("parts.flight.motion.velocity_m_per_s takes flight.stl out of the machine, ")
+    assert "away from all else after" in message and "or the run be shorter" in message
+    check_machine(*machine(run, ("flight", PLATE, {"motion": {**on, "stop_s": 0.1}}), ("floor", floor, {})))
+    check_machine(*machine(run, ("flight", PLATE, {"motion": SWING}), ("floor", floor, {})))
+
+
 def test_a_part_that_goes_through_particles(run):
     """In a time step of 0.12 ms a part goes no farther than half of the smallest radius of 4.8 mm, 19.5 m/s."""
     step = run["derived"]["time_step_s"]
