@@ -205,7 +205,9 @@ def wrong_value(path: KeyPath, value: Any, schema: dict[str, Any]) -> str:
             return f"{name} is the text {value!r}, allowed is {allowed_text(schema)}, without quotation marks"
     whole = schema.get("type") == "integer" or "anyOf" in schema
     found = repr(value) if isinstance(value, float) and whole else show(value)
-    return f"{name} is {found}, allowed is {allowed_text(schema)}"
+    percent = isinstance(value, (int, float)) and 2.0 <= value <= 100.0 and schema.get("maximum") == 1
+    hint = ", no percentage" if percent and any("fraction" in str(key) for key in path) else ""
+    return f"{name} is {found}, allowed is {allowed_text(schema)}{hint}"
 
 
 def _unit_in_value(path: KeyPath, number: str, unit: str, schema: dict[str, Any]) -> str:

@@ -72,6 +72,12 @@ def test_what_they_become_is_a_file_of_materials_again(config):
             " passing is a fraction, not percent.",
         ),
         (
+            SIEVES.replace("[0, 0.5, 1]", "[4, 55, 100]"),
+            (MEDIAN, FRACTIONS),
+            "line 8: particles.river_gravel.size_distribution.passing.fraction[1] is 4, allowed is a number from 0 to"
+            " 1, no percentage.",
+        ),
+        (
             CLASSES,
             (MEDIAN,),
             "line 2: particles.river_gravel.median_diameter_mm is missing, allowed is a number from 0.01 to 200 mm.",
