@@ -220,16 +220,32 @@ def test_what_the_calibrations_pairs_give():
 
 
 def test_what_the_best_pattern_wears():
-    """The best pattern and R5 over plain with their intervals, at quick and, of R5, at standard."""
+    """The best pattern, the other confirmed one and R5 over plain with their intervals, what is left of their bumps and
+    what they cost, and how R5 wears at standard.
+    """
     page, key = told("optimised_pattern.md"), ["setting", "surface"]
-    best = rows("optimised_pattern_results_quick.md", "setting", "major radius mm", "minor radius mm").iloc[0]
+    confirmed = rows("optimised_pattern_results_quick.md", "setting", "major radius mm", "minor radius mm")
+    name = re.search(r"The best pattern, (\w+) \(", told("optimised_pattern_results_quick.md"))[1]
+    (best,) = (row for _, row in confirmed.iterrows() if row["setting"] == name)
+    (other,) = (row for _, row in confirmed.iterrows() if row["setting"] not in (name, "R5"))
     found = table("tables/optimised_pattern_quick_key_numbers.csv").set_index(key)
     interval, over = "{:.2f} ({:.2f} to {:.2f})".format, ["wear_over_plain", "interval_low", "interval_high"]
     best_one, r5 = (interval(*found.loc[(each, "convex"), over]) for each in (best["setting"], "R5"))
     predicted = interval(*best[["predicted", "predicted low", "predicted high"]].astype(float))
     of_r5 = interval(*best[["over reference", "over reference low", "over reference high"]].astype(float))
     assert f"wears {best_one} of a plain plate**, predicted {predicted}, and {of_r5} of R5." in page
-    assert f"Of its bumps {float(best['left percent']):.0f} % are left" in page
+    tried = table("tables/optimised_pattern_quick_search_record.csv").set_index("setting")
+    left = tried["left_percent"]
+    assert f"Of its bumps {left[name]:.0f} % are left after 200 h, of R5's {left['R5']:.0f} %" in page
+    alike = tried.loc[tried["row_spacing_mm"] <= 14, "wear_over_plain"].round(2)
+    assert alike.between(0.21, 0.29).mean() > 0.75 and "patterns with such rows lie between 0.21 and 0.29" in page
+    of_other = interval(*found.loc[(other["setting"], "convex"), over])
+    assert f"the other confirmed pattern, with columns 4 mm closer, wears {of_other}" in page
+    assert float(other["column spacing mm"]) + 4 == float(best["column spacing mm"])
+    force = found["mean_normal_force_N"]
+    sums = [force[each, "convex"] / force[each, "plain"] for each in (name, "R5")]
+    assert "add up to {:.1f} times those on a plain one, R5's to {:.1f};".format(*sums) in page
+    assert f"wear is on bumps ({found.loc[(name, 'convex'), 'pattern_share_percent']:.0f} %)" in page
     standard = rows("screening_results_standard.md", "setting", "surface", "packings").set_index(key)
     long = standard.loc[("R5", "convex"), ["wear over plain", "interval low", "interval high"]].astype(float)
     assert f"R5 wears {r5} of plain there, and {interval(*long)} on the source's sample" in page
