@@ -369,6 +369,21 @@ WEAR = [
         "operation.change_out_remaining_mm is 30",
         "at most 29.7 mm, of parts.liner.thickness_mm all but a hundredth",
     ),
+    (
+        {"parts": {"liner": {"change_out_remaining_mm": 30}}},
+        "parts.liner.change_out_remaining_mm is 30",
+        "at most 29.7 mm, of parts.liner.thickness_mm all but a hundredth",
+    ),
+    (
+        {"parts": {"liner": {"change_out_remaining_mm": 3, "change_out_remaining_fraction": 0.3}}},
+        "parts.liner.change_out_remaining_fraction is 0.3",
+        "one rule of change-out, parts.liner.change_out_remaining_mm is there already",
+    ),
+    (
+        {"parts": {"hood": {"change_out_remaining_mm": 3}}},
+        "parts.hood.change_out_remaining_mm is 3",
+        "none for a part with role: rigid, which does not wear, or role: wears",
+    ),
 ]
 
 EFFORT = [

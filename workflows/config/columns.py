@@ -1,6 +1,7 @@
 """Columns of design tables that stand for settings: those that a case names, and where it allows it any setting.
 
-A column of the second kind is the path of a setting that is one number or word, with points: parts.liner.file.
+A column of the second kind is the path of a setting, with points: parts.liner.file. Its cells are one number, one word,
+or the numbers of a list with spaces between.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, displa
 from bulkwear.workflows.config.optimise import OPTIMISE
 from bulkwear.workflows.config.schema import case_schema, leaves, subschema
 from bulkwear.workflows.config.until import UNTIL
-from bulkwear.workflows.config.validation import check_alternatives, unknown_key
+from bulkwear.workflows.config.validation import allowed_text, check_alternatives, is_list_of_numbers, unknown_key
 from bulkwear.workflows.engine.project import Project
 
 ANY_SETTING = "x-any-setting"  # key of the schema of a design table
@@ -70,7 +71,7 @@ def with_row(settings: dict[str, Any], row: Layer, alternatives: Sequence[Sequen
 def opened(schema: dict[str, Any], path: Path, project: Project, case: str) -> dict[str, Any]:
     """Return the schema of a case's design table; where any setting may be a column of it, those of the table's header.
 
-    Raises ConfigError for a path in the header that is no setting, or no single one.
+    Raises ConfigError for a path in the header that is no setting, or one that no cell can hold.
     """
     if not schema.get(ANY_SETTING):
         return schema
@@ -95,7 +96,9 @@ def _fault(name: str, settings: dict[str, Any], own: dict[str, str]) -> tuple[st
         return f"column {name} is a setting of the whole study, allowed are those of a run", {}
     if not inner:
         return unknown_key(key, settings, noun="setting"), {}
+    if is_list_of_numbers(inner):
+        return "", {**inner, "x-allowed": f"{allowed_text(inner)}, with spaces between"}
     if inner.get("type") in ("object", "array"):
-        kind = {"object": "a block of keys", "array": "a list"}[inner["type"]]
-        return f"column {name} is {kind}, allowed are settings that are one number or one word", {}
+        kind = {"object": "a block of keys", "array": "a list of words or blocks"}[inner["type"]]
+        return f"column {name} is {kind}, allowed are settings that are a number, a word or a list of numbers", {}
     return "", inner

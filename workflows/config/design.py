@@ -50,7 +50,15 @@ from bulkwear.workflows.config.study import Study
 from bulkwear.workflows.config.study_files import DESIGN, STUDIES, list_studies
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.until import GOALS, UNTIL
-from bulkwear.workflows.config.validation import check_given, locate, read_design, show, unknown_name, with_place
+from bulkwear.workflows.config.validation import (
+    as_told,
+    check_given,
+    locate,
+    read_design,
+    show,
+    unknown_name,
+    with_place,
+)
 from bulkwear.workflows.engine.case import Run
 from bulkwear.workflows.engine.chain import sample_decks
 from bulkwear.workflows.engine.derived import laws_beside
@@ -118,7 +126,7 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
         settings=_told(sources, layers, settings, materials),
         runs=tuple(run for row in rows for run in runs_of[row.values["row"]]),
         all_runs=tuple(run for runs in runs_of.values() for run in runs),
-        design_rows=tuple(row.values for row in rows),
+        design_rows=tuple(as_told(row.values) for row in rows),
         setting_of=designed.setting_of,
         packing_of=designed.packing_of,
         factors=factors if can_tell(factors, designed, rows) else {},

@@ -15,6 +15,7 @@ from typing import Any
 from bulkwear.workflows.config.layers import ConfigError, Layer
 from bulkwear.workflows.config.optimise import optimise_of
 from bulkwear.workflows.config.until import first_packings, until_of
+from bulkwear.workflows.config.validation import as_told
 from bulkwear.workflows.engine.case import Run
 from bulkwear.workflows.engine.decks import SMALLEST_SEED, primes
 
@@ -120,7 +121,8 @@ def _groups(rows: Sequence[Layer], seed_column: str) -> list[list[Layer]]:
     """Return the rows of each setting, in the order of the first ones."""
     groups: dict[frozenset, list[Layer]] = {}
     for row in rows:
-        key = frozenset(item for item in row.values.items() if item[0] not in ("row", seed_column, PACKINGS))
+        told = as_told(row.values)
+        key = frozenset(item for item in told.items() if item[0] not in ("row", seed_column, PACKINGS))
         groups.setdefault(key, []).append(row)
     return list(groups.values())
 

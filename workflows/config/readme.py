@@ -46,8 +46,9 @@ name of your own. A key that is needed has no default; where its block may be le
 """
 
 ANY_SETTING_WORDS = """\
-Besides these, any setting of the case that is one number or word may be a column, under its path with points, as
-`inlet.rate_t_per_h`. An empty cell leaves the setting as it is.
+Besides these, any setting of the case that is a number, a word or a list of numbers may be a column, under its
+path with points, as `inlet.rate_t_per_h`; a list has spaces between its numbers. An empty cell leaves the setting as it
+is.
 
 """
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -331,12 +331,30 @@ def read_design(
 
 
 def cell_value(text: str, schema: dict[str, Any]) -> Any:
-    """Return the value of a cell: a number or a boolean where it spells one and the column is no text."""
+    """Return the value of a cell: a number, a boolean or numbers with spaces between where it spells one and the column
+    is no text.
+    """
     if schema.get("type") == "boolean":
         return {"true": True, "false": False}.get(text, text)
     if schema.get("type") == "integer" and INTEGER.match(text) and len(text) <= LONGEST_NUMBER:
         return int(text)
+    if is_list_of_numbers(schema):
+        values = [cell_value(each, schema["items"]) for each in text.split()]
+        return text if any(isinstance(each, str) for each in values) else values
     return float(text) if schema.get("type") in NUMBERS and NUMBER.match(text) else text
+
+
+def as_told(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of a design row with its lists of numbers as a cell has them: 3 0 -0.3."""
+    return {
+        name: " ".join(f"{number:.10g}" for number in value) if isinstance(value, list) else value
+        for name, value in values.items()
+    }
+
+
+def is_list_of_numbers(schema: dict[str, Any]) -> bool:
+    """Return whether a schema is of a list of numbers."""
+    return schema.get("type") == "array" and schema["items"].get("type") in NUMBERS
 
 
 def check_columns(header: list[str], schema: dict[str, Any], source: str) -> None:

@@ -25,7 +25,8 @@ from bulkwear.postproc.wear.kernel_sums import columns_of_law
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.part_loads import part_loads
 from bulkwear.postproc.wear.thickness import LOCAL_THICKNESS, thickness_to_back, with_thickness
-from bulkwear.workflows.cases.equipment.life import allowed_depths, thinning
+from bulkwear.workflows.cases.equipment.change_out import allowed_depths, rule_of
+from bulkwear.workflows.cases.equipment.life import thinning
 from bulkwear.workflows.cases.equipment.motions import axis_point
 from bulkwear.workflows.cases.equipment.parameters import law_values, sums_of
 from bulkwear.workflows.cases.equipment.phases import phase_of
@@ -197,7 +198,10 @@ def urgency(run: Parameters, table: pd.DataFrame) -> np.ndarray:
     """Return by how much each patch gets thinner over the depth that it may lose (1/h), by which places are ordered;
     over 1 m where that is not known, or nothing.
     """
-    allowed = allowed_depths(table["thickness_m"].to_numpy(), run["operation"])
+    allowed, of_part = np.full(len(table), np.nan), table.groupby("part").indices
+    for part in run["parts"]:
+        rows = of_part.get(part["name"], [])
+        allowed[rows] = allowed_depths(table["thickness_m"].to_numpy()[rows], rule_of(run["operation"], part))
     return thinning(table).to_numpy() / np.where(np.isfinite(allowed), allowed, 1.0)
 
 

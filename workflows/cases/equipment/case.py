@@ -10,6 +10,7 @@ import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, read_surface
 from bulkwear.workflows.cases.equipment import decks as equipment_deck
+from bulkwear.workflows.cases.equipment.change_out import REMAINING, RULES, given_rule
 from bulkwear.workflows.cases.equipment.checks import EQUIPMENT_CHECKS
 from bulkwear.workflows.cases.equipment.motions import motion_of
 from bulkwear.workflows.cases.equipment.parameters import PART_DEFAULTS, laws_of, run_parameters
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from bulkwear.postproc.wear.directions import SliceEnds
 
 SECONDS_PER_HOUR = 3600.0
-BY_MASS = "change_out_worn_mass_fraction"  # key of the operation
 OF_WEAR = (*PART_DEFAULTS, "law_parameters", *Case.only_told)  # keys of a part
 OF_DURATION = ("time_step_s", "run_in_steps", "travel_steps")  # in which parts move, and particles fly
 
@@ -47,7 +47,7 @@ class Equipment(Case):
     geometry = ("parts", "particle", "inlet", "filling", "outlets", "periodic", "domain")
     through_files = ("inlet", "outlets", "periodic", "domain")  # the solver reads them from files beside its decks
     consumed = ("wear", "remeshing", "parts", "sampling", "start_up", "updates", *through_files)
-    only_told = (*Case.only_told, "change_out_remaining_m", "change_out_by_mass")
+    only_told = (*Case.only_told, *RULES)
     first_title = "start-up"
     leftovers = ()
     kept = ("patches.csv", "parts.csv", "flow.csv")
@@ -90,14 +90,13 @@ class Equipment(Case):
         """Return what the parts are made and checked from: not how they wear; of the run how long it may get, and how
         thick a liner is when it is changed.
         """
-        parts = [{key: value for key, value in part.items() if key not in OF_WEAR} for part in parameters["parts"]]
+        parts = [
+            {key: value for key, value in part.items() if key not in (*OF_WEAR, *RULES)} | _checked_rule(part)
+            for part in parameters["parts"]
+        ]
         derived = {key: parameters["derived"][key] for key in OF_DURATION}
-        remaining = parameters["operation"].get("change_out_remaining_m", 0.0)
         sections = super().surface_sections(parameters)
-        judged = {"change_out_remaining_m": remaining}
-        if BY_MASS in parameters["operation"]:
-            judged["change_out_by_mass"] = True
-        return {**sections, "parts": parts, "derived": derived, **judged}
+        return {**sections, "parts": parts, "derived": derived, **_checked_rule(parameters["operation"])}
 
     def check_files(self, runs: Sequence[Run]) -> None:
         """Raise ConfigError for a drawing without the solid that is named, or in a unit that makes it far too large."""
@@ -259,6 +258,11 @@ class Equipment(Case):
 
 
 register(Equipment())
+
+
+def _checked_rule(section: Parameters) -> dict[str, Any]:
+    """Return a rule of change-out as drawings are checked by it: what shall remain of a thickness, of others which."""
+    return {name: value if name == REMAINING else True for name, value in given_rule(section).items()}
 
 
 def _left(span: Span, folder: Path) -> tuple[SurfaceMesh, pd.DataFrame]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from bulkwear.postproc.wear.coefficient import DIMENSIONLESS, PER_PA
 from bulkwear.postproc.wear.laws import LAWS
+from bulkwear.workflows.cases.equipment.change_out import REMAINING, RULES, asked_by, rule_of, settings_key
 from bulkwear.workflows.cases.equipment.motion_checks import COUNTED_MOTION_CHECKS, MOTION_CHECKS
 from bulkwear.workflows.cases.equipment.parameters import REPORTS, SECONDS_PER_HOUR, most_blocks, start_up_blocks
 from bulkwear.workflows.cases.equipment.placing import largest_diameter
@@ -38,8 +39,8 @@ LEFT_TO_WEAR = 0.01  # -, of its thickness, that a liner may wear before it is c
 LONGEST_OPERATION = 500_000.0  # h, as of operation.duration_h
 MOST_STEPS = 50_000_000  # of a run: with ten thousand particles they take a core about a week
 MOST_PARTICLES = 20_000_000  # in a machine: some 20 GB of memory
-HOW_IT_WEARS = (PER_PA, DIMENSIONLESS, "wear_coefficient_error", "law", "parameters")  # keys of a part
-RULES = ("remaining_m", "remaining_fraction", "worn_mass_fraction")  # of a change-out
+CHANGE_OUT = tuple(map(settings_key, RULES))  # keys of the operation and of parts
+HOW_IT_WEARS = (PER_PA, DIMENSIONLESS, "wear_coefficient_error", "law", "parameters", *CHANGE_OUT)  # keys of a part
 
 
 def summed_by_the_solver(run: CheckedRun) -> Fault | None:
@@ -206,22 +207,24 @@ def fed_what_is_predicted(run: CheckedRun) -> Fault | None:
 
 def one_change_out_rule(run: CheckedRun) -> Fault | None:
     """A liner is changed by one rule."""
-    given = [f"change_out_{rule.removesuffix('_m')}{'_mm' * rule.endswith('_m')}" for rule in RULES]
-    given = [key for key in given if key in run.settings["operation"]]
-    if len(given) < 2:
-        return None
-    return f"operation.{given[1]}", f"one rule of change-out, operation.{given[0]} is there already"
+    sections = {"operation": run.settings["operation"]}
+    sections |= {f"parts.{name}": part for name, part in run.settings["parts"].items()}
+    for name, section in sections.items():
+        if len(given := [key for key in CHANGE_OUT if key in section]) > 1:
+            return f"{name}.{given[1]}", f"one rule of change-out, {name}.{given[0]} is there already"
+    return None
 
 
 def liner_left_to_wear(run: CheckedRun) -> Fault | None:
     """What remains of a liner when it is changed leaves a hundredth of its thickness at least to wear."""
-    remaining = run.parameters["operation"].get("change_out_remaining_m", 0.0)
-    thickness = {p["name"]: p["thickness_m"] for p in run.parameters["parts"] if p["wears"] and "thickness_m" in p}
-    thinnest = min(thickness, key=thickness.__getitem__, default="")
-    if not thinnest or remaining <= (most := (1.0 - LEFT_TO_WEAR) * thickness[thinnest]):
-        return None
-    least = f"parts.{thinnest}.thickness_mm"
-    return "operation.change_out_remaining_mm", f"at most {millimetres(most)}, of {least} all but a hundredth"
+    given = [part for part in run.parameters["parts"] if part["wears"] and "thickness_m" in part]
+    for part in sorted(given, key=lambda each: each["thickness_m"]):
+        remaining = rule_of(run.parameters["operation"], part).get(REMAINING, 0.0)
+        if remaining > (most := (1.0 - LEFT_TO_WEAR) * part["thickness_m"]):
+            key = f"{asked_by(part['name'], part)}.{settings_key(REMAINING)}"
+            least = f"parts.{part['name']}.thickness_mm"
+            return key, f"at most {millimetres(most)}, of {least} all but a hundredth"
+    return None
 
 
 # ---------------------------------------------------------------- what it takes

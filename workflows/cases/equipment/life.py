@@ -20,13 +20,12 @@ import pandas as pd
 
 from bulkwear.postproc.statistics.intervals import Estimate
 from bulkwear.postproc.statistics.worst_place import worst_place
-from bulkwear.postproc.wear.service_life import allowed_depth, allowed_volume, hour_reached, life_interval
+from bulkwear.postproc.wear.service_life import allowed_volume, hour_reached, life_interval
+from bulkwear.workflows.cases.equipment.change_out import BY_MASS, allowed_depths, rule_of
 from bulkwear.workflows.cases.equipment.phases import PRISTINE, WEARING, WORN
 from bulkwear.workflows.cases.equipment.tables import Runs
 
 WHOLE_PART = -1  # in place of a patch
-RULES = ("change_out_remaining_m", "change_out_remaining_fraction", "change_out_worn_mass_fraction")
-BY_MASS = "change_out_worn_mass_fraction"
 FOLLOWED, PARTLY, EXTRAPOLATED, AS_BUILT = "followed", "partly followed", "last rate goes on", "rate as built goes on"
 NO_THICKNESS, NO_VOLUME = "its thickness is not known", "its mass is not known: its surface is open"
 TOO_THIN = "it is nowhere thicker as built than what shall remain"
@@ -189,7 +188,7 @@ def part_lives(runs: Runs, volumes: Mapping[tuple[str, str], float]) -> dict[tup
 def part_life(runs: Runs, setting: str, part: str, volume: float = math.nan) -> PartLife:
     """Return the life of a part in a setting; volume: m3 of it as built, for rules by mass, NaN unknown."""
     run = runs.first(setting)
-    rule = run["operation"]
+    rule = rule_of(run["operation"], run["parts"][part])
     error = run["parts"][part]["wear_coefficient_error"] or 0.0
     if BY_MASS in rule:
         patches, courses = np.array([WHOLE_PART]), mass_courses(runs, setting, part)
@@ -200,15 +199,6 @@ def part_life(runs: Runs, setting: str, part: str, volume: float = math.nan) -> 
         if places["thickness_m"].notna().any():
             return _life(patches, allowed, courses, error, TOO_THIN)
     return _life(patches, allowed, courses, error, NO_VOLUME if BY_MASS in rule else NO_THICKNESS)
-
-
-def allowed_depths(thickness: np.ndarray, rule: Mapping[str, Any]) -> np.ndarray:
-    """Return the depth (p,) m that places may lose by the rule of a study, their thickness (p,) m without one; NaN
-    where the thickness is not known or no more than what shall remain.
-    """
-    remaining = rule.get("change_out_remaining_m", 0.0)
-    fraction = rule.get("change_out_remaining_fraction", 0.0)
-    return allowed_depth(thickness, remaining, fraction)
 
 
 def _life(

@@ -15,17 +15,15 @@ from bulkwear.postproc.statistics.intervals import Estimate, estimate
 from bulkwear.postproc.statistics.worst_place import geometric_mean
 from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.postproc.wear.directions import ON_END
+from bulkwear.workflows.cases.equipment.change_out import BY_MASS, allowed_depths, rule_of, rule_words
 from bulkwear.workflows.cases.equipment.life import (
     AS_BUILT,
-    BY_MASS,
     WHOLE_PART,
     WORST,
     PartLife,
-    allowed_depths,
     mass_courses,
     patch_courses,
 )
-from bulkwear.workflows.cases.equipment.machine_tables import rule_words
 from bulkwear.workflows.cases.equipment.motions import surface_runs
 from bulkwear.workflows.cases.equipment.tables import (
     AT_A_PATCH,
@@ -45,17 +43,18 @@ Lives = Mapping[tuple[str, str], PartLife]
 
 
 def part_volumes(surface: str, run: Mapping[str, Any]) -> dict[str, float]:
-    """Return the volume (m3) of each part that wears and is closed, where its mass decides; else nothing.
+    """Return the volume (m3) of each part that wears and is closed, and whose mass decides.
 
     surface: of the run as built, whose labels are the numbers of the parts. A part may be open at the ends of a slice,
     where it goes on in its image; its volume is then that within the slice.
     """
-    if BY_MASS not in run["operation"]:
+    by_mass = [name for name, part in run["parts"].items() if BY_MASS in rule_of(run["operation"], part)]
+    if not by_mass:
         return {}
     mesh, found = read_surface(surface), {}
     for number, (name, part) in enumerate(run["parts"].items()):
         triangles = mesh.triangles[mesh.cell_data["part"] == number]
-        if part["wears"] and _closed(mesh.points, triangles, run["periodic"]):
+        if part["wears"] and name in by_mass and _closed(mesh.points, triangles, run["periodic"]):
             found[name] = _volume(mesh.points, triangles, run["periodic"])
     return found
 
@@ -92,7 +91,7 @@ def life_table(runs: Runs, lives: Lives) -> pd.DataFrame:
         run = runs.first(setting)
         row = {"setting": setting, "part": part, "patch": life.patch, **_place(runs, setting, part, life.patch)}
         row["surface_runs"] = surface_runs(run["parts"][part]["motion"])
-        row["rule"] = rule_words(run["operation"])
+        row["rule"] = rule_words(rule_of(run["operation"], run["parts"][part]))
         row["asked_h"] = run["operation"].get("duration_s", 0.0) / SECONDS_PER_HOUR
         row["allowed_mm"] = life.allowed * MILLIMETRES if life.patch != WHOLE_PART else math.nan
         row |= _lives_in_hours(life) | _in_other_units(life, run)
@@ -173,7 +172,9 @@ def worst_places(runs: Runs, rates: pd.DataFrame, lives: Lives) -> pd.DataFrame:
     rows = []
     for setting, part in lives:
         places, courses = patch_courses(runs, setting, part)
-        allowed = allowed_depths(places["thickness_m"].to_numpy(), runs.first(setting)["operation"])
+        run = runs.first(setting)
+        rule = rule_of(run["operation"], run["parts"][part])
+        allowed = allowed_depths(places["thickness_m"].to_numpy(), rule)
         last = np.array([course.last.mean(axis=0) for course in courses])
         hours = np.array([course.until(allowed, rate) for course, rate in zip(courses, last, strict=True)])
         load = geometric_mean(1.0 / hours)

@@ -25,6 +25,7 @@ from bulkwear.postproc.wear.bodies import body
 from bulkwear.postproc.wear.directions import ON_END
 from bulkwear.postproc.wear.thickness import thickness_to_back
 from bulkwear.workflows.cases.equipment.bodies import closed_faces, diagonal, first_within, is_within, share_a_piece
+from bulkwear.workflows.cases.equipment.change_out import BY_MASS, REMAINING, asked_by, rule_of, settings_key
 from bulkwear.workflows.cases.equipment.checks import LEFT_TO_WEAR, thin_phrase
 from bulkwear.workflows.cases.equipment.decks import (
     LARGEST_CELL,
@@ -321,10 +322,11 @@ def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> No
     """
     if not part["wears"]:
         return
-    if run.get("change_out_by_mass") and not _is_closed(run, mesh):
+    rule, asked = rule_of(run, part), asked_by(part["name"], part)
+    if BY_MASS in rule and not _is_closed(run, mesh):
         raise ConfigError(
-            f"operation.change_out_worn_mass_fraction is given, and parts.{part['name']} has no mass, allowed are"
-            f" closed bodies: the surface of {part['file']} is open; change it by change_out_remaining_mm."
+            f"{asked}.{BY_MASS} is given, and parts.{part['name']} has no mass, allowed are closed bodies: the surface"
+            f" of {part['file']} is open; change it by change_out_remaining_mm."
         )
     if "thickness_m" in part:
         if part["thickness_m"] > (size := diagonal(mesh.points)):
@@ -349,9 +351,9 @@ def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> No
     if thickness < part["edge_m"] * (1.0 - MEASURED):
         allowed = thin_phrase(thickness, source)
         raise ConfigError(f"parts.{part['name']}.edge_mm is {1e3 * part['edge_m']:.6g}, allowed is {allowed}.")
-    if (remaining := run["change_out_remaining_m"]) > (most := (1.0 - LEFT_TO_WEAR) * thickness):
+    if (remaining := rule.get(REMAINING, 0.0)) > (most := (1.0 - LEFT_TO_WEAR) * thickness):
         raise ConfigError(
-            f"operation.change_out_remaining_mm is {1e3 * remaining:.6g}, allowed is at most {millimetres(most)}: of"
+            f"{asked}.{settings_key(REMAINING)} is {1e3 * remaining:.6g}, allowed is at most {millimetres(most)}: of"
             f" {millimetres(thickness)}, {source}, of parts.{part['name']}, a hundredth at least is there to wear."
         )
 

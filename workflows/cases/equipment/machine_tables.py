@@ -13,6 +13,7 @@ import pandas as pd
 
 from bulkwear.postproc.tables.display import DEGREES, MILLIMETRES
 from bulkwear.postproc.wear.laws import LAWS
+from bulkwear.workflows.cases.equipment.change_out import BY_MASS, rule_of, rule_words
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.worn_pair import ONLY_TOLD
 from bulkwear.workflows.report.sentences import listed, spoken
@@ -147,23 +148,26 @@ def feed_table(runs: Mapping[str, Parameters]) -> pd.DataFrame:
     return pd.DataFrame(rows).dropna(axis="columns", how="all")
 
 
-def rule_words(operation: Mapping[str, Any]) -> str:
-    """Return the rule by which a liner is changed, as a phrase: 10 mm left."""
-    if "change_out_remaining_m" in operation and operation["change_out_remaining_m"] > 0.0:
-        return f"{operation['change_out_remaining_m'] * MILLIMETRES:g} mm left"
-    if operation.get("change_out_remaining_fraction", 0.0) > 0.0:
-        return f"{100.0 * operation['change_out_remaining_fraction']:g} % of the thickness left"
-    if "change_out_worn_mass_fraction" in operation:
-        return f"{100.0 * operation['change_out_worn_mass_fraction']:g} % of the mass worn"
-    return "worn through"
+def change_out_words(run: Parameters) -> list[str]:
+    """Return by which rules the parts that wear are changed, a sentence each; of several rules which parts."""
+    of_rule: dict[tuple[str, str], list[str]] = {}
+    for part in (each for each in run["parts"] if each["wears"]):
+        rule = rule_of(run["operation"], part)
+        where = "by its mass" if BY_MASS in rule else "at its worst place"
+        of_rule.setdefault((where, rule_words(rule)), []).append(part["name"])
+    if len(of_rule) == 1:
+        return [f"A part is changed {where}: {words}." for where, words in of_rule]
+    said = []
+    for (where, words), names in of_rule.items():
+        each = "The" if len(names) == 1 else "Each of"
+        said.append(f"{each} {listed([spoken(name) for name in names])} is changed {where}: {words}.")
+    return said
 
 
 def operation_words(run: Parameters) -> str:
     """Return what operation a run predicts, and when its liners are changed."""
     operation, asked = run["operation"], run["derived"]["operation_s"] / SECONDS_PER_HOUR
-    said = [f"A part is changed at its worst place: {rule_words(operation)}."]
-    if "change_out_worn_mass_fraction" in operation:
-        said = [f"A part is changed by its mass: {rule_words(operation)}."]
+    said = change_out_words(run)
     if asked > 0.0:
         fed = operation.get("throughput_kg")
         said.append(f"{asked:,.0f} h of operation are asked for{f', {fed / KG_PER_MT:g} Mt' if fed else ''}.")

@@ -17,6 +17,7 @@ import pandas as pd
 from bulkwear.postproc.mesh import SurfaceMesh, read_surface
 from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.postproc.wear.area_patches import area_patches
+from bulkwear.workflows.cases.equipment.change_out import remaining_m, rule_of
 from bulkwear.workflows.cases.equipment.tables import AT_A_PATCH, HOURS, KG_PER_MT, SECONDS_PER_HOUR
 
 SURFACE = "surface.vtu"
@@ -177,11 +178,9 @@ def change_out_mm(runs: Sequence[Run]) -> dict[str, float]:
     """Return the remaining thickness (mm) at which each part is changed; NaN where that is not one thickness."""
     found: dict[str, set[float]] = {}
     for run in runs:
-        rule = run["operation"]
         for name in wearing(run):
-            due, thickness = rule.get("change_out_remaining_m", np.nan), run["parts"][name]["thickness_m"]
-            if "change_out_remaining_fraction" in rule and thickness is not None:
-                due = max(np.nan_to_num(due), rule["change_out_remaining_fraction"] * thickness)
+            part = run["parts"][name]
+            due = remaining_m(rule_of(run["operation"], part), part["thickness_m"])
             found.setdefault(name, set()).add(MILLIMETRES * due)
     return {name: values.pop() if len(values) == 1 else np.nan for name, values in found.items()}
 

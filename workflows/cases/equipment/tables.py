@@ -19,6 +19,7 @@ from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.statistics.intervals import Estimate, estimate
 from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.postproc.tables.summary import NAMES, THROUGH
+from bulkwear.workflows.cases.equipment.change_out import RULES
 from bulkwear.workflows.cases.equipment.motions import frame_turns
 from bulkwear.workflows.cases.equipment.phases import PRISTINE, START_UP, WEARING, WORN
 from bulkwear.workflows.engine.chain import WORN_THROUGH
@@ -38,7 +39,7 @@ COEFFICIENT = ("wear_coefficient_per_pa", "wear_coefficient_error")
 LOADS = {"sliding_power_W": "W", "impact_power_W": "W", "worn_mass_kg_per_h": "kg/h", "power_W": "W"}
 FORCE = "force"
 VECTORS = {FORCE: "N", "torque": "N m"}
-OF_PARTS = ("wears", "file", "material", "thickness_m", "law", *COEFFICIENT, "motion")
+OF_PARTS = ("wears", "file", "material", "thickness_m", "law", *COEFFICIENT, "motion", *RULES)
 FIRST_WALL = 2  # type of the first wall; that of the particles is 1
 AT_THE_END = ("time_s", "carried_volume_m3", "largest_depth_m", "smallest_angle_deg")
 SUMMED = ("worn_volume_m3", "applied_volume_m3", "sliding_work_J")

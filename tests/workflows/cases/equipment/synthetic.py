@@ -46,6 +46,7 @@ class SyntheticPart:
     force: float = 100.0
     power: float = 0.0
     motion: Mapping[str, Any] | None = None
+    rule: Mapping[str, float] = field(default_factory=dict)  # of change-out, its own
 
     @property
     def wears(self) -> bool:
@@ -124,6 +125,7 @@ def values_of(run: SyntheticRun) -> dict[str, Any]:
                 "wear_coefficient_per_pa": part.coefficient,
                 "wear_coefficient_error": part.error,
                 "motion": part.motion,
+                **part.rule,
             }
             for part in run.parts
         },

@@ -233,11 +233,10 @@ def test_wear_of_a_block_is_its_rate_for_the_operation_it_stands_for(machine):
 
 
 def tables_of(rates, thickness=(0.01, 0.03, np.nan), edge=0.02):
-    """Tables of blocks with three patches; rates: (blocks, 3) m/h."""
+    """Tables of blocks with three patches of the liner; rates: (blocks, 3) m/h."""
+    same = {"thickness_m": thickness, "edge_m": edge, "phase": "pristine", "part": "liner"}
     return [
-        pd.DataFrame({"recession_m_per_h": rate, "thickness_m": thickness, "edge_m": edge, "phase": "pristine"}).assign(
-            back_recession_m_per_h=0.0
-        )
+        pd.DataFrame({"recession_m_per_h": rate, "back_recession_m_per_h": 0.0, **same})
         for rate in np.asarray(rates, float)
     ]
 
@@ -262,6 +261,16 @@ def test_urgency_is_recession_over_the_depth_that_may_be_lost(machine, rule, dep
     (table,) = tables_of([[1e-5, 6e-5, 1e-3]])
     expected = np.array([1e-5, 6e-5, 1e-3]) / depths_m
     np.testing.assert_allclose(blocks.urgency(ruled(machine, **rule), table), expected, rtol=ROUND_OFF)
+
+
+def test_urgency_is_by_the_rule_of_each_part(machine):
+    """A plate with 25 of its 30 mm to remain, beside a liner by the operation's 8 mm; by its mass all may be lost."""
+    (table,) = tables_of([[1e-5, 1e-5, 1e-5]], thickness=0.03)
+    table["part"] = ["plate", "liner", "paddle"]
+    own = {"plate": {"change_out_remaining_m": 0.025}, "paddle": {"change_out_worn_mass_fraction": 0.5}}
+    run = ruled(machine, change_out_remaining_m=0.008)
+    run["parts"] = [part | own.get(part["name"], {}) for part in run["parts"]]
+    np.testing.assert_allclose(blocks.urgency(run, table), 1e-5 / np.array([0.005, 0.022, 0.03]), rtol=ROUND_OFF)
 
 
 def test_the_place_that_is_changed_first_decides(machine):

@@ -180,6 +180,8 @@ def test_a_drawing_that_is_not_there_is_named_with_its_part(tmp_path):
         {"operation": {"duration_h": None, "throughput_mt": 0.01}},
         {"operation": {"change_out_remaining_mm": None, "change_out_worn_mass_fraction": 0.3}},
         {"parts": {"liner": {"edge_mm": 30, "thickness_mm": 30}}},
+        {"parts": {"liner": {"change_out_worn_mass_fraction": 0.3}}},
+        {"parts": {"liner": {"change_out_remaining_mm": 5}}, "operation": {"change_out_remaining_mm": 30}},
         {"parts": {"hood": {"thickness_mm": 1}}},
         STILL,
         {**STILL, "outlets": {"side": {"centre_mm": [400, 0, 345], "normal": [1, 0, 0], "size_mm": [900, 800]}}},

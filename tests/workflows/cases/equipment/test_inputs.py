@@ -74,6 +74,12 @@ def test_judging_simulates_nothing(tmp_path, before, operation):
     assert digest(tmp_path, operation=operation) == before
 
 
+@pytest.mark.parametrize("rule", [{"change_out_remaining_mm": 1}, {"change_out_worn_mass_fraction": 0.2}])
+def test_judging_a_part_by_a_rule_of_its_own_simulates_nothing(tmp_path, before, rule):
+    """As that of all parts."""
+    assert digest(tmp_path, parts={"liner": rule}) == before
+
+
 def told(folder, **changes):
     """What Snakemake compares of the surface of the tiny machine, its settings changed."""
     with machine_study(folder, **changes) as study:
@@ -100,6 +106,7 @@ def test_a_surface_is_made_again_for_its_shape_and_room_alone(tmp_path):
         {"sampling": {"most_blocks": 4}},  # parts move and particles fly for longer
         {"inlet": {"centre_mm": [-60, 0, 161]}},
         {"operation": {"change_out_remaining_mm": 3}},  # which a drawing may be too thin for
+        {"parts": {"liner": {"change_out_remaining_mm": 3}}},
     )
     for changes in other:
         assert told(tmp_path, **changes) != first, changes

@@ -7,8 +7,9 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.mesh import SurfaceMesh, write_surface
-from bulkwear.workflows.cases.equipment import life, life_findings, life_tables, tables
-from bulkwear.workflows.cases.equipment.life import AS_BUILT, BY_MASS, EXTRAPOLATED, FOLLOWED, WHOLE_PART
+from bulkwear.workflows.cases.equipment import life, life_findings, life_tables, pictures, tables
+from bulkwear.workflows.cases.equipment.change_out import BY_MASS, FRACTION, REMAINING
+from bulkwear.workflows.cases.equipment.life import AS_BUILT, EXTRAPOLATED, FOLLOWED, WHOLE_PART
 from tests.support.shapes import box
 from tests.workflows.cases.equipment.synthetic import (
     DENSITY,
@@ -97,6 +98,29 @@ def test_rules_of_thickness(lives, rule, depth, words):
     assert row["rule"] == words
 
 
+def test_a_part_has_a_rule_of_its_own(lives, tmp_path):
+    """Its own stands for that of the operation, of whatever kind, in lives, worst places and maps of what is left."""
+    plate, cone = (replace(UNIFORM, name=name) for name in ("plate", "cone"))
+    parts = (UNIFORM, replace(plate, rule={REMAINING: 0.02}), replace(cone, rule={BY_MASS: 0.5}))
+    run = with_rule(replace(ONE, parts=parts), **{FRACTION: 0.1})
+    volume = 4 * SIDE**2 * THICKNESS
+    runs, found, table = lives(run, volumes={("plain", "cone"): volume})
+    table = table.set_index("part")
+    allowed = {"liner": 0.9 * THICKNESS, "plate": THICKNESS - 0.02, "cone": 0.5 * THICKNESS}
+    for name, depth in allowed.items():
+        assert table.loc[name, "life_h"] == pytest.approx(depth / RATE, rel=RELATIVE), name
+    assert table["rule"].to_dict() == {
+        "liner": "10 % of the thickness left",
+        "plate": "20 mm left",
+        "cone": "50 % of the mass worn",
+    }
+    worst = life_tables.worst_places(runs, tables.rates_table(runs), found).groupby("part")["life_h"].first()
+    assert worst["plate"] == pytest.approx(allowed["plate"] / RATE, rel=RELATIVE)
+    due = pictures.change_out_mm(runs.values)
+    assert due == pytest.approx({"liner": 3.0, "plate": 20.0, "cone": np.nan}, nan_ok=True)
+    assert life_tables.part_volumes(tmp_path / "plain" / "surface.vtu", runs.values[0]) == {}  # the cone is open
+
+
 def test_rule_of_mass(lives):
     """A tenth of the mass is a tenth of the volume, lost by all patches together; no place decides."""
     volume = 4 * SIDE**2 * THICKNESS
@@ -113,12 +137,16 @@ def test_rule_of_mass_tells_a_rate_that_wear_was_changing(lives):
     assert "the last rate goes on, 1.5 times that as built" in life_findings.life_sentence(row, False)
 
 
-def test_volume_of_a_part_is_that_of_its_body(tmp_path):
-    """Labels are the numbers of the parts; a rigid one has none."""
+@pytest.mark.parametrize("own", [False, True])
+def test_volume_of_a_part_is_that_of_its_body(tmp_path, own):
+    """Labels are the numbers of the parts; a rigid one has none. The rule may be the operation's or its own."""
     mesh = box((0.4, 0.2, 0.1), 2)
     both = SurfaceMesh(mesh.points, mesh.triangles, {"part": np.full(len(mesh.triangles), 1)})
     write_surface(tmp_path / "surface.vtu", both)
-    found = life_tables.part_volumes(tmp_path / "surface.vtu", {**TWO_PARTS, "periodic": None})
+    run = {**TWO_PARTS, "periodic": None}
+    if own:
+        run |= {"parts": {"hood": {"wears": False}, "liner": {"wears": True, BY_MASS: 0.1}}, "operation": {}}
+    found = life_tables.part_volumes(tmp_path / "surface.vtu", run)
     assert found == {"liner": pytest.approx(0.4 * 0.2 * 0.1)}
 
 

@@ -10,6 +10,7 @@ from bulkwear.meshes.gmsh_model import gmsh_model
 from bulkwear.meshes.own.mesh import own_mesh
 from bulkwear.postproc.mesh import SurfaceMesh, enclosed_volume
 from bulkwear.postproc.wear.bodies import body, together
+from bulkwear.workflows.cases.equipment.change_out import BY_MASS, REMAINING
 from bulkwear.workflows.cases.equipment.machine_checks import (
     check_machine,
     check_units,
@@ -346,6 +347,9 @@ def test_a_drawn_liner_of_which_more_shall_remain_than_there_is(run):
             f"operation.change_out_remaining_mm is {1e3 * remaining:g}, allowed is at most 39.6 mm: of 40 mm, the"
             " thickness in liner.stl, of parts.liner, a hundredth at least is there to wear."
         )
+    own = message_of(run, ("liner", thick, {REMAINING: 0.05}), change_out_remaining_m=0.01)
+    assert own.startswith("parts.liner.change_out_remaining_mm is 50, allowed is at most 39.6 mm")
+    check_machine(*machine(run, ("liner", thick, {REMAINING: 0.01}), change_out_remaining_m=0.05))
     check_machine(*machine(run, ("liner", thick, {}), change_out_remaining_m=0.039))
     check_machine(*machine(run, ("liner", thick, {"wears": False}), change_out_remaining_m=0.05))
     check_machine(*machine(run, ("liner", thick, {"thickness_m": 0.06}), change_out_remaining_m=0.05))
@@ -354,12 +358,16 @@ def test_a_drawn_liner_of_which_more_shall_remain_than_there_is(run):
 def test_a_liner_without_a_mass_is_not_changed_by_it(run):
     """An open body has none; one that is open at the ends of a slice has that of the slice."""
     open_box = without_lid((0.4, 0.1, 0.03), 0.025, (0.0, 0.0, -0.3))
-    message = message_of(run, ("tray", open_box, {}), change_out_by_mass=True)
+    message = message_of(run, ("tray", open_box, {}), **{BY_MASS: True})
     assert message.startswith("operation.change_out_worn_mass_fraction is given, and parts.tray has no mass")
+    own = message_of(run, ("tray", open_box, {BY_MASS: True}))
+    assert own.startswith("parts.tray.change_out_worn_mass_fraction is given, and parts.tray has no mass")
+    by_thickness = {"thickness_m": 0.03, REMAINING: 0.0}
+    check_machine(*machine(run, ("tray", open_box, by_thickness), **{BY_MASS: True}))
     check_machine(*machine(run, ("tray", open_box, {"thickness_m": 0.03})))
     ends = np.abs(PLATE.points[PLATE.triangles][:, :, 1]).min(axis=1) > SLICE["high_m"] - 1e-9
     sliced = SurfaceMesh(PLATE.points, PLATE.triangles[~ends])
-    check_machine(*machine(run, ("tray", sliced, {}), periodic=SLICE, change_out_by_mass=True))
+    check_machine(*machine(run, ("tray", sliced, {}), periodic=SLICE, **{BY_MASS: True}))
 
 
 def test_a_thickness_that_no_part_of_that_size_has(run):

@@ -11,7 +11,7 @@ import pytest
 
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.workflows.cases.equipment import heads, page, page_blocks
-from bulkwear.workflows.cases.equipment.machine_tables import laws_of_parts, parts_table
+from bulkwear.workflows.cases.equipment.machine_tables import change_out_words, laws_of_parts, parts_table
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.markdown_text import written
 from bulkwear.workflows.report.page import write_page
@@ -262,6 +262,25 @@ def test_nothing_is_said_of_caps_where_no_shape_was_worn(tmp_path):
         assert "25 %" in dict(simplifications(page_parameters(study), both, page))["Capped steps"]
         rounded = kept.assign(carried_volume_m3=-1e-18, worn_volume_m3=4.0)
         assert dict(simplifications(page_parameters(study), rounded, page))["Capped steps"].endswith("nothing is left.")
+
+
+def test_parts_that_are_changed_by_rules_of_their_own_are_named(tmp_path):
+    """Parts of one rule together; of one rule for all a single sentence."""
+    with machine_study(tmp_path) as study:
+        run = study.runs[0].parameters
+    assert change_out_words(run) == ["A part is changed at its worst place: 2 mm left."]
+    own = {"plate": {"change_out_remaining_m": 0.005}, "paddle": {"change_out_worn_mass_fraction": 0.3}}
+    parts = [part | own.get(part["name"], {}) for part in run["parts"]]
+    assert change_out_words({**run, "parts": parts}) == [
+        "The liner is changed at its worst place: 2 mm left.",
+        "The plate is changed at its worst place: 5 mm left.",
+        "The paddle is changed by its mass: 30 % of the mass worn.",
+    ]
+    alike = [part | own["plate"] if part["name"] in ("plate", "liner") else part for part in run["parts"]]
+    assert change_out_words({**run, "parts": alike}) == [
+        "Each of liner and plate is changed at its worst place: 5 mm left.",
+        "The paddle is changed at its worst place: 2 mm left.",
+    ]
 
 
 @pytest.mark.parametrize(
