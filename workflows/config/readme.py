@@ -52,6 +52,7 @@ is.
 
 """
 
+SETTINGS = "settings"  # ends the names of the schemas of what has defaults
 CHECKS_TITLE = "Checks that compare values"
 
 LAWS_HEAD = """\
@@ -79,22 +80,30 @@ TABLES_OF_CASE = (
 )
 
 
-def _rows(schema: dict[str, Any]) -> Iterator[str]:
+def _rows(schema: dict[str, Any], given: bool) -> Iterator[str]:
+    """Yield the rows of a schema's keys; given: whether what it requires is needed, for there are no defaults."""
     told = set()
     for path, inner in leaves(schema):
         for block in (path[:end] for end in range(1, len(path))):
             found = _schema_of(schema, block)
             if block not in told and "description" in found and (_needed(schema, block) or NEEDED in found):
-                yield _row(schema, block, found)
+                yield _row(schema, block, found, given)
             told.add(block)
         if "description" in inner:
-            yield _row(schema, path, inner)
+            yield _row(schema, path, inner, given)
 
 
-def _row(schema: dict[str, Any], path: KeyPath, inner: dict[str, Any]) -> str:
+def _row(schema: dict[str, Any], path: KeyPath, inner: dict[str, Any], given: bool) -> str:
     unit = inner.get("x-unit", "-")
     allowed = allowed_text(inner).removesuffix(f" {unit}")
-    needed = "; needed" if _needed(schema, path) else "; may be left out" if _optional_block(schema, path) else ""
+    required = given and path[-1] in _schema_of(schema, path[:-1]).get("required", ())
+    needed = (
+        "; needed"
+        if required or _needed(schema, path)
+        else "; may be left out"
+        if _optional_block(schema, path)
+        else ""
+    )
     overriding = f"; overrides `{inner['x-setting']}`" if "x-setting" in inner else ""
     return f"| `{dotted(path)}` | {unit} | {allowed}{needed} | {inner['description']}{overriding} |"
 
@@ -117,7 +126,8 @@ def _optional_block(schema: dict[str, Any], path: KeyPath) -> bool:
 
 def table(name: str) -> str:
     """Return the Markdown table of one schema."""
-    return "\n".join(["| key | unit | allowed | meaning |", "|---|---|---|---|", *_rows(load_schema(name))])
+    rows = _rows(load_schema(name), given=not name.endswith(SETTINGS))
+    return "\n".join(["| key | unit | allowed | meaning |", "|---|---|---|---|", *rows])
 
 
 def wear_laws() -> str:

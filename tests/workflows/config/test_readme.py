@@ -41,6 +41,21 @@ def test_what_a_study_has_to_give(equipment, key, unit, end):
     assert meaning
 
 
+@pytest.mark.parametrize(
+    ("key", "end"),
+    [
+        ("walls.<name>.shear_modulus_pa", "; needed"),
+        ("walls.<name>.contact.restitution", "; needed"),
+        ("walls.<name>.hardness_pa", "to 1e+11"),
+        ("particles.<name>.median_diameter_mm", "to 200"),
+        ("solver.ranks", "to 4096"),  # has a default, which some file must give
+    ],
+)
+def test_what_a_material_has_to_have(key, end):
+    """What its schema requires, for materials have no defaults; settings have."""
+    assert row_of(readme().splitlines(), key)[2].endswith(end)
+
+
 def test_columns_by_path(equipment):
     """Only tables of a case that allows it say that any setting may be a column."""
     assert any(
