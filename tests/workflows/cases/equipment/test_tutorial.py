@@ -5,6 +5,7 @@ minute and a half, so that `make test` loads its study alone.
 """
 
 import html
+import math
 import os
 import re
 import subprocess
@@ -81,10 +82,12 @@ def finished(home):
 
 
 def test_the_page_gives_what_a_machine_needs():
-    """One YAML, its design, and the same design with a second row; every command once."""
-    assert [name for name, _ in FILES] == [f"config/{place}" for place in ("studies/transfer.yaml",)] + [
-        "config/designs/transfer.csv"
-    ] * 2
+    """One YAML, its design, the same design with a second row, and a machine without a feed; every command once."""
+    assert [name for name, _ in FILES] == [
+        "config/studies/transfer.yaml",
+        *["config/designs/transfer.csv"] * 2,
+        "config/studies/drum.yaml",
+    ]
     assert len(SENTENCES) > 1
     assert set(NEEDED) <= set(yaml.safe_load(FILES[0][1]))
     assert re.findall(r"^snakemake (\S+)$", COMMANDS, re.MULTILINE) == [
@@ -125,17 +128,31 @@ def test_the_run_goes_through_all_phases(finished):
     }
 
 
+def loaded(folder, name):
+    """A study of the tutorial, checked; of two designs with one name the second takes the place of the first."""
+    for place, text in (*FILES, ("config/designs/drum.csv", FILES[1][1])):
+        (folder / place).parent.mkdir(parents=True, exist_ok=True)
+        (folder / place).write_text(text)
+    enter_project(folder)
+    try:
+        return load_study(name)
+    finally:
+        leave_project()
+
+
+def test_a_machine_that_is_filled_once(tmp_path):
+    """It passes the checks; a block is one turn of it, and nothing is fed."""
+    run = loaded(tmp_path, "drum").runs[0].parameters
+    (liner,) = run["parts"]
+    turn = 2.0 * math.pi / liner["motion"]["speed_rad_per_s"]
+    assert run["sampling"]["block_s"] == pytest.approx(turn, rel=1e-3)  # three digits of a second
+    assert run["inlet"] is None and run["filling"]["fraction"] == 0.3
+
+
 def test_a_second_design_is_a_row(tmp_path):
     """The step with two designs: B has another drawing, all else is A's."""
     draw.main(tmp_path / "meshes")
-    for name, text in FILES:  # the second design takes the place of the first
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text)
-    enter_project(tmp_path)
-    try:
-        study = load_study(STUDY)
-    finally:
-        leave_project()
+    study = loaded(tmp_path, STUDY)
     files = {run.name: {part["name"]: part["file"] for part in run.parameters["parts"]} for run in study.runs}
     assert list(files) == ["A", "B"]
     assert files["B"] == files["A"] | {"liner": "transfer_steep.step"}
