@@ -34,7 +34,7 @@ Generated from the schemas (`workflows/config/schemas`, `workflows/cases/*/*.sch
   its `fidelities` blocks override them again.
 * The command line overrides all of them.
 * `designs/*.csv`: design tables; each row makes a run, or one with each surface (`R9_convex`). Columns are those of the
-  case; where they name a setting, the row overrides it.
+  case; where they name a setting, the row overrides it. A column `note` is for remarks, and nothing reads it.
 * `materials.yaml`: particles, walls and their contacts.
 
 A project of one's own has such a folder too; [docs/project.md](../docs/project.md) tells how its files and these go

@@ -64,6 +64,7 @@ VALUE_WITH_UNIT = re.compile(r"(?P<number>[-+]?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?)
 
 NEEDED = "x-needed"  # of the schema of a block: keys that a study gives, for which there are no defaults
 NUMBERS = ("number", "integer")  # types of the schemas that have a range and a unit
+REMARKS = "note"  # column of a design table that people read alone
 LONGEST_ROW = 60  # letters of a row's name
 LONGEST_VALUE = 60  # characters of a value that a message shows
 ALIKE, ALIKE_PATHS = 0.6, 0.7  # -, least likeness of a key and of its whole path to a known one that is named instead
@@ -295,14 +296,14 @@ def read_design(
 ) -> list[Layer]:
     """Return the rows of a design table as layers that know their lines, after all checks of single values.
 
-    An empty cell of a column that the schema does not require gives no value.
+    An empty cell of a column that the schema does not require gives no value, and REMARKS are left out.
     wanted: whether a row of that name is to be simulated; one that is not, and has a fault, is left out
 
     Raises ConfigError naming file, line, row and column.
     """
     source = display_name(path, root)
     header, rows = read_csv_rows(path, root)
-    check_columns(header, schema, source)
+    check_columns([column for column in header if column != REMARKS], schema, source)
     lines: dict[str, int] = {}
     checked = []
     for line, cells in rows:
@@ -318,6 +319,7 @@ def read_design(
                 " allowed is each name once."
             )
         lines[name] = line
+        cells.pop(REMARKS, None)
         values = {c: cell_value(v, schema["properties"][c]) for c, v in cells.items() if v or c in schema["required"]}
         layer = Layer(source, values, {(): line}, f"row {name}" if name else "")
         try:

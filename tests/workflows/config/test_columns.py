@@ -48,6 +48,15 @@ def test_a_list_of_numbers_may_be_a_column(tmp_path):
     assert table[0]["inlet.velocity_m_per_s"] == "0.5 0 -1"
 
 
+def test_remarks_in_a_table_are_read_by_people_alone(tmp_path):
+    """A column of them changes no run and no setting: rows that differ in it alone are packings of one another."""
+    with machine_study(tmp_path, "row,inlet.rate_t_per_h\nA,1.2\nB,1.3\n") as study:
+        plain = [run.parameters for run in study.runs]
+    with machine_study(tmp_path, 'row,note,inlet.rate_t_per_h\nA,"as ordered, 2024",1.2\nB,,1.3\n') as study:
+        assert [run.parameters for run in study.runs] == plain
+        assert "note" not in study.design_table()[0]
+
+
 def test_a_key_may_be_given_by_rows_alone(tmp_path):
     """What no file gives, but every row, is not missing; a row without it is the one that is named."""
     rows = "row,inlet.rate_t_per_h,parts.liner.material\nA,1.2,steel\n"
