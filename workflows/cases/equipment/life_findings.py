@@ -114,11 +114,12 @@ def life_sentence(row: pd.Series, several: bool) -> str:
 def interval_words(row: pd.Series) -> str:
     """Return the interval of a life, or what is known of it from one packing."""
     ends = row.life_low_h, row.life_high_h
-    if row.packings > FROM_ONE and np.isfinite(ends[0]):
-        if ends[1] > TOO_WIDE * ends[0]:
-            return f"{row.packings} packings do not tell it within a factor of {TOO_WIDE:g}"
-        return f"{span(*ends, 'h')}, {PER_CENT}"
     unknown = UNKNOWN if row.packings <= FROM_ONE else "scatter unknown"
+    if ends[1] > TOO_WIDE * ends[0]:
+        too_few = f"do not tell it within a factor of {TOO_WIDE:g}"
+        return f"{row.packings} packings {too_few}" if row.packings > FROM_ONE else f"{unknown}; its blocks {too_few}"
+    if row.packings > FROM_ONE and np.isfinite(ends[0]):
+        return f"{span(*ends, 'h')}, {PER_CENT}"
     if np.isfinite(ends[0]):
         return f"{unknown}; its own blocks and the coefficient give {span(*ends, 'h')}"
     if row.coefficient_error > 0.0:

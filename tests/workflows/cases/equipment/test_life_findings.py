@@ -3,9 +3,10 @@
 import math
 
 import pandas as pd
+import pytest
 
 from bulkwear.postproc.statistics.intervals import UNKNOWN
-from bulkwear.workflows.cases.equipment.life_findings import OF_ONE_COEFFICIENT, answers_on_first_change
+from bulkwear.workflows.cases.equipment.life_findings import OF_ONE_COEFFICIENT, answers_on_first_change, interval_words
 
 
 def lives_of(*rows, packings=3):
@@ -43,6 +44,20 @@ def test_one_packing_does_not_tell_which_part_is_changed_first():
     (said,) = answers_on_first_change(*both)
     assert said.startswith(f"The plate has the shortest life, 750 h ({UNKNOWN}; ")
     assert said.endswith("whether the liner is changed before it cannot be said.")
+
+
+@pytest.mark.parametrize(
+    ("packings", "said"),
+    [
+        (3, "3 packings do not tell it within a factor of 100"),
+        (1, f"{UNKNOWN}; its blocks do not tell it within a factor of 100"),
+    ],
+)
+def test_an_interval_that_tells_nothing_is_not_written_out(packings, said):
+    """Of packings, and of the blocks of one; up to that factor its ends are told."""
+    wide, narrow = (lives_of(("liner", "steel", 600.0, factor, factor), packings=packings)[0] for factor in (11.0, 9.0))
+    assert interval_words(wide.iloc[0]) == said
+    assert "67 to 5,400 h" in interval_words(narrow.iloc[0])
 
 
 def test_what_is_open_is_told_together():
