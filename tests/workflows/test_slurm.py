@@ -33,10 +33,11 @@ TIMEOUT = 1200.0  # s, for a study that takes about a minute on an idle machine
 POLL = 0.2  # s
 # Polling of jobs that take seconds; the cluster of the tests has no accounting and no network file system.
 OF_TEST = "--slurm-status-command squeue --slurm-init-seconds-before-status-checks 3 --latency-wait 5"
+SIDE_BY_SIDE = min(4, os.cpu_count() or 1)  # jobs; the four of the profile would wait for ever on a node of fewer cores
 RUN = "R9_plain"
 PLAIN = TINY.replace("surfaces: [convex, plain]", "surfaces: [plain]")
-# Restart files within its cycles.
-IN_PIECES = PLAIN + "solver: {checkpoint_interval_steps: 200}\n"
+# Restart files within its cycles, and so short time steps that a cycle takes the seconds in which it can be caught.
+IN_PIECES = PLAIN + "solver: {checkpoint_interval_steps: 200, rayleigh_fraction: 0.01}\n"
 # What Slurm keeps of a job's environment for it hides an allocation from Open MPI, or promises one that is not there.
 START_RANKS = """
 from bulkwear.workflows.engine.solver import SCREEN, run_deck
@@ -71,7 +72,7 @@ def cluster():
 
 def snakemake(folder: Path, cluster: Slurm, *arguments: str) -> subprocess.Popen:
     """Start Snakemake with the profile of clusters."""
-    profile = ["--workflow-profile", "profiles/slurm", *OF_TEST.split()]
+    profile = ["--workflow-profile", "profiles/slurm", *OF_TEST.split(), "--cores", str(SIDE_BY_SIDE)]
     return subprocess.Popen(
         [sys.executable, "-m", "snakemake", *arguments, *profile],
         cwd=folder,

@@ -96,14 +96,9 @@ def _rows(schema: dict[str, Any], given: bool) -> Iterator[str]:
 def _row(schema: dict[str, Any], path: KeyPath, inner: dict[str, Any], given: bool) -> str:
     unit = inner.get("x-unit", "-")
     allowed = allowed_text(inner).removesuffix(f" {unit}")
-    required = given and path[-1] in _schema_of(schema, path[:-1]).get("required", ())
-    needed = (
-        "; needed"
-        if required or _needed(schema, path)
-        else "; may be left out"
-        if _optional_block(schema, path)
-        else ""
-    )
+    needed = "; may be left out" if _optional_block(schema, path) else ""
+    if _needed(schema, path) or (given and path[-1] in _schema_of(schema, path[:-1]).get("required", ())):
+        needed = "; needed"
     overriding = f"; overrides `{inner['x-setting']}`" if "x-setting" in inner else ""
     return f"| `{dotted(path)}` | {unit} | {allowed}{needed} | {inner['description']}{overriding} |"
 
